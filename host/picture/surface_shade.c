@@ -4,6 +4,7 @@
  * One light behind the viewer, above on the left. It wraps around a little, so that no part that is seen is black; a
  * weak highlight shows how the surface is curved. The inner side of a surface is lit as the outer one is.
  */
+#include "label_colour.h"
 #include "parallel.h"
 #include "surface_scene.h"
 
@@ -72,21 +73,12 @@ static void normal_at(const scene *s, const scene_part *part, uint64_t triangle,
     for (int axis = 0; axis < 3; axis++) out[axis] = face[axis];
 }
 
-/* A colour of each label: hues apart by the golden ratio of the circle, so that near labels have far ones. */
-static void label_colour(uint32_t label, double out[3]) {
-    const double turn = 6 * ((double)(label * 2654435769u) / 4294967296.0);
-    for (int n = 0; n < 3; n++) {
-        const double away = fabs(fmod(turn - 2 * n + 9, 6) - 3); /* from the hue of this component, 0 to 3 */
-        const double strength = away < 1 ? 1 : away < 2 ? 2 - away : 0;
-        out[n] = 110 + 130 * strength;
-    }
-}
-
 /* What is seen of a triangle between labels is the body behind it; from within a body at the border, its own wall. */
 static void colour_of(const scene *s, uint64_t triangle, int is_outer, double out[3]) {
     const uint32_t *sides = s->mesh->boundary_labels ? s->mesh->boundary_labels + 2 * triangle : NULL;
     if (sides) {
         label_colour(is_outer || !sides[1] ? sides[0] : sides[1], out);
+        for (int n = 0; n < 3; n++) out[n] *= 255;
         return;
     }
     for (int n = 0; n < 3; n++) out[n] = (is_outer ? outer_colour : inner_colour)[n];

@@ -1,29 +1,30 @@
 /*
- * glb.c - glTF 2.0, binary (.glb): one mesh of one material, as browsers and viewers show it
+ * glb.c - glTF 2.0, binary (.glb): one mesh of one material, or of one for each label, as browsers and viewers show it
  *
  * Source: "glTF 2.0 Specification", Khronos Group. A header, a chunk of JSON that describes what follows, and a chunk
  * with positions, normals where the mesh has them, and triangles of uint32. Sizes have 32 bits. Coordinates are float32
  * as they are: glTF's y points upwards in a viewer, its unit is the metre, and neither is made so here. A mesh without
- * triangles is a scene with nothing in it, as the format has no empty arrays.
+ * triangles is a scene with nothing in it, as the format has no empty arrays. Triangles of a label map have the
+ * material of their inner side's label, named by it.
  */
 #include "decimal.h"
 #include "file_text.h"
-#include "shown_records.h"
+#include "label_colour.h"
+#include "label_order.h"
 
 #include <errno.h>
 #include <math.h>
 
-enum { HEADER_BYTES = 12, CHUNK_HEADER_BYTES = 8, JSON_MOST = 4096 };
+enum { HEADER_BYTES = 12, CHUNK_HEADER_BYTES = 8, JSON_MOST = 4096, LABELS_JSON_MOST = 1 << 25 };
 
 /* componentType, target of a view */
 enum { GL_UNSIGNED_INT = 5125, GL_FLOAT = 5126, GL_ARRAY_BUFFER = 34962, GL_ELEMENT_ARRAY_BUFFER = 34963 };
 
-/* A view of the binary chunk, and the accessor of the same number that sees all of it. */
+/* A view of the binary chunk: of vertices, and last of triangles. */
 typedef struct glb_view {
     record_array records;
-    const char *type, *bounds; /* bounds: more of the accessor's text */
-    uint64_t element_count;
-    int component_type, target;
+    const char *bounds; /* more of the accessor's text */
+    int target;
 } glb_view;
 
 enum { VIEWS_MOST = 3 };
@@ -42,7 +43,8 @@ static uint64_t binary_bytes(const shown_mesh *s) {
 }
 
 int glb_fits(const shown_mesh *s) {
-    return binary_bytes(s) <= UINT32_MAX - HEADER_BYTES - 2 * CHUNK_HEADER_BYTES - JSON_MOST;
+    return binary_bytes(s) <=
+           UINT32_MAX - HEADER_BYTES - 2 * CHUNK_HEADER_BYTES - (s->labels ? LABELS_JSON_MOST : JSON_MOST);
 }
 
 static void add_vector(file_text *t, const char *name, const float *vector) {
@@ -70,12 +72,64 @@ static void add_bounds(file_text *t, const shown_mesh *s) {
     add_vector(t, "max", high);
 }
 
-static void add_accessors(file_text *t, const glb_view *views, int count) {
+/* Triangles that follow each other and have one material; label 0: the mesh has none. */
+typedef struct glb_primitive {
+    uint32_t label;
+    uint64_t first, end;
+} glb_primitive;
+
+static int next_primitive(const label_order *order, glb_primitive *p) {
+    const uint64_t count = order->shown->mesh->triangle_count;
+    p->first = p->end;
+    if (p->first == count) return 0;
+    p->label = order->triangles ? label_order_at(order, p->first)[0] : 0;
+    p->end = order->triangles ? label_order_end(order, p->first, 0) : count;
+    return 1;
+}
+
+/* The format has linear components; a polynomial that is within 0.002 of sRGB's curve. */
+static double linear_of(double c) { return c * (c * (c * 0.305306011 + 0.682171111) + 0.012522878); }
+
+static void add_material(file_text *t, uint32_t label) {
+    if (label) {
+        double colour[3];
+        label_colour(label, colour);
+        text_add(t, "{\"name\":\"label %u\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[", label);
+        for (int n = 0; n < 3; n++) text_add(t, "%s0.%03d", n ? "," : "", (int)(1000 * linear_of(colour[n]) + 0.5));
+    } else {
+        text_add(t, "{\"name\":\"surface\",\"pbrMetallicRoughness\":{\"baseColorFactor\":[0.8,0.8,0.8");
+    }
+    text_add(t, ",1],\"metallicFactor\":0,\"roughnessFactor\":0.6},\"doubleSided\":true}");
+}
+
+/* The accessors of primitives follow those of vertices. */
+static void add_mesh(file_text *t, const label_order *order, int vectors) {
+    text_add(t, "\"materials\":[");
+    for (glb_primitive p = {0}; next_primitive(order, &p);) {
+        text_add(t, p.first ? "," : "");
+        add_material(t, p.label);
+    }
+    text_add(t, "],\"meshes\":[{\"primitives\":[");
+    int n = 0;
+    for (glb_primitive p = {0}; next_primitive(order, &p); n++)
+        text_add(t, "%s{\"attributes\":{\"POSITION\":0%s},\"indices\":%d,\"material\":%d}", n ? "," : "",
+                 vectors > 1 ? ",\"NORMAL\":1" : "", vectors + n, n);
+    text_add(t, "]}],");
+}
+
+/* An accessor sees all of its view; that of triangles those of a primitive. */
+static void add_accessors(file_text *t, const label_order *order, const glb_view *views, int count) {
     uint64_t offset = 0;
     text_add(t, "\"accessors\":[");
-    for (int n = 0; n < count; n++)
-        text_add(t, "%s{\"bufferView\":%d,\"componentType\":%d,\"count\":%llu,\"type\":\"%s\"%s}", n ? "," : "", n,
-                 views[n].component_type, (unsigned long long)views[n].element_count, views[n].type, views[n].bounds);
+    for (int n = 0; n < count - 1; n++)
+        text_add(t, "{\"bufferView\":%d,\"componentType\":%d,\"count\":%llu,\"type\":\"VEC3\"%s},", n, GL_FLOAT,
+                 (unsigned long long)views[n].records.span.count, views[n].bounds);
+    for (glb_primitive p = {0}; next_primitive(order, &p);) {
+        text_add(t, "%s{\"bufferView\":%d,", p.first ? "," : "", count - 1);
+        if (p.first) text_add(t, "\"byteOffset\":%llu,", (unsigned long long)(12 * p.first));
+        text_add(t, "\"componentType\":%d,\"count\":%llu,\"type\":\"SCALAR\"}", GL_UNSIGNED_INT,
+                 (unsigned long long)(3 * (p.end - p.first)));
+    }
     text_add(t, "],\"bufferViews\":[");
     for (int n = 0; n < count; n++) {
         const uint64_t bytes = record_array_bytes(&views[n].records);
@@ -86,7 +140,8 @@ static void add_accessors(file_text *t, const glb_view *views, int count) {
     text_add(t, "],\"buffers\":[{\"byteLength\":%llu}]", (unsigned long long)offset);
 }
 
-static void add_json(file_text *t, const shown_mesh *s, const glb_view *views, int count) {
+static void add_json(file_text *t, const label_order *order, const glb_view *views, int count) {
+    const shown_mesh *s = order->shown;
     text_add(t, "{\"asset\":{\"version\":\"2.0\",\"generator\":\"tetracubes\"");
     for (int n = 0; shown_notes(s, n).name; n++)
         text_add(t, "%s\"%s\":\"%s\"", n ? "," : ",\"extras\":{", shown_notes(s, n).name, shown_notes(s, n).value);
@@ -94,13 +149,9 @@ static void add_json(file_text *t, const shown_mesh *s, const glb_view *views, i
     if (is_empty(s)) {
         text_add(t, "\"scenes\":[{}]}");
     } else {
-        text_add(t, "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"name\":\"isosurface\"}],"
-                    "\"materials\":[{\"name\":\"surface\",\"pbrMetallicRoughness\":{\"baseColorFactor\":"
-                    "[0.8,0.8,0.8,1],\"metallicFactor\":0,\"roughnessFactor\":0.6},\"doubleSided\":true}],");
-        text_add(t,
-                 "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0%s},\"indices\":%d,\"material\":0}]}],",
-                 count > 2 ? ",\"NORMAL\":1" : "", count - 1);
-        add_accessors(t, views, count);
+        text_add(t, "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0,\"name\":\"isosurface\"}],");
+        add_mesh(t, order, count - 1);
+        add_accessors(t, order, views, count);
         text_add(t, "}");
     }
     text_fill(t, ' ', (4 - t->length % 4) % 4);
@@ -129,20 +180,20 @@ void glb_write(output *o, const shown_mesh *s) {
     file_text json = {0}, bounds = {0};
     const vertex_array *normals = find_normals(s);
     const shown_array shown = {s, normals ? *normals : (vertex_array){0}};
-    const uint64_t vertices = file_vertex_count(s);
+    label_order order;
     int count = 0;
     glb_view views[VIEWS_MOST];
+    if (label_order_make(s, &order)) o->error = ENOMEM;
     add_bounds(&bounds, s);
-    views[count++] = (glb_view){records_of_positions(s, 0), "VEC3", bounds.bytes, vertices, GL_FLOAT, GL_ARRAY_BUFFER};
-    if (normals)
-        views[count++] = (glb_view){records_of_values(&shown), "VEC3", "", vertices, GL_FLOAT, GL_ARRAY_BUFFER};
-    views[count++] = (glb_view){records_of_triangles(s),     "SCALAR",        "",
-                                3 * s->mesh->triangle_count, GL_UNSIGNED_INT, GL_ELEMENT_ARRAY_BUFFER};
-    if (!bounds.has_failed) add_json(&json, s, views, count);
+    views[count++] = (glb_view){records_of_positions(s, 0), bounds.bytes, GL_ARRAY_BUFFER};
+    if (normals) views[count++] = (glb_view){records_of_values(&shown), "", GL_ARRAY_BUFFER};
+    views[count++] = (glb_view){records_of_ordered(s, &order), "", GL_ELEMENT_ARRAY_BUFFER};
+    if (!bounds.has_failed) add_json(&json, &order, views, count);
     if (bounds.has_failed || json.has_failed)
         o->error = ENOMEM;
     else
         write_file(o, s, &json, views, count);
     text_release(&json);
     text_release(&bounds);
+    label_order_release(&order);
 }

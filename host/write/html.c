@@ -11,10 +11,9 @@
  * A text in a browser may have 2^29 characters, hence the limit.
  */
 #include "file_text.h"
-#include "shown_records.h"
+#include "label_order.h"
 
 #include <errno.h>
-#include <stdlib.h>
 
 enum { RECORD_BYTES = 12, RECORD_CHARACTERS = 16, TEXT_MOST = 1 << 28 };
 
@@ -58,56 +57,18 @@ static void write_array(output *o, const char *id, record_array records) {
     text_release(&head);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- pairs */
-
-/* Triangles in the order of their pairs of labels; triangle: from malloc, NULL where they have none. */
-typedef struct pair_order {
-    const shown_mesh *shown;
-    uint32_t *triangles;
-} pair_order;
-
-static uint64_t pair_of(const shown_mesh *s, uint32_t triangle) {
-    const uint32_t *labels = s->labels + (size_t)2 * triangle;
-    return (uint64_t)labels[0] << 32 | labels[1];
-}
-
-static int compare_pairs(const void *first, const void *second, void *shown) {
-    const uint32_t a = *(const uint32_t *)first, b = *(const uint32_t *)second;
-    const uint64_t pair_a = pair_of(shown, a), pair_b = pair_of(shown, b);
-    return pair_a != pair_b ? (pair_a > pair_b) - (pair_a < pair_b) : (a > b) - (a < b);
-}
-
-static pair_order order_pairs(output *o, const shown_mesh *s) {
-    const size_t count = (size_t)s->mesh->triangle_count;
-    pair_order order = {s, s->labels && count ? malloc(count * sizeof *order.triangles) : NULL};
-    if (s->labels && count && !order.triangles) o->error = ENOMEM;
-    for (size_t n = 0; n < count && order.triangles; n++) order.triangles[n] = (uint32_t)n;
-    if (order.triangles) qsort_r(order.triangles, count, sizeof *order.triangles, compare_pairs, (void *)(uintptr_t)s);
-    return order;
-}
-
-static unsigned char *encode_ordered(const void *source, uint64_t first, uint64_t end, unsigned char *to) {
-    const pair_order *order = source;
-    for (uint64_t n = first; n < end; n++)
-        to = encode_triangles(order->shown, order->triangles[n], order->triangles[n] + 1ull, to);
-    return to;
-}
-
-static void list_pairs(file_text *t, const pair_order *order) {
+static void list_pairs(file_text *t, const label_order *order) {
     const uint64_t count = order->triangles ? order->shown->mesh->triangle_count : 0;
     text_add(t, ", \"pairs\": [");
     for (uint64_t n = 0, end; n < count; n = end) {
-        const uint64_t pair = pair_of(order->shown, order->triangles[n]);
-        for (end = n + 1; end < count && pair_of(order->shown, order->triangles[end]) == pair;) end++;
-        text_add(t, "%s[%llu, %llu, %llu]", n ? ", " : "", (unsigned long long)(pair >> 32),
-                 (unsigned long long)(pair & UINT32_MAX), (unsigned long long)(end - n));
+        const uint32_t *labels = label_order_at(order, n);
+        end = label_order_end(order, n, 1);
+        text_add(t, "%s[%u, %u, %llu]", n ? ", " : "", labels[0], labels[1], (unsigned long long)(end - n));
     }
     text_add(t, "]");
 }
 
-/* ------------------------------------------------------------------------------------------------------------ page */
-
-static void write_about(output *o, const shown_mesh *s, const pair_order *order) {
+static void write_about(output *o, const shown_mesh *s, const label_order *order) {
     file_text t = {0};
     text_add(&t,
              "<script type=\"application/json\" id=\"mesh\">{\"vertices\": %llu, \"triangles\": %llu, \"normals\": %s, "
@@ -125,8 +86,8 @@ static void write_about(output *o, const shown_mesh *s, const pair_order *order)
 }
 
 void html_write(output *o, const shown_mesh *s) {
-    const pair_order order = order_pairs(o, s);
-    record_array triangles = records_of_triangles(s);
+    label_order order;
+    if (label_order_make(s, &order)) o->error = ENOMEM;
     output_bytes(o, viewer_text, strlen(viewer_text));
     write_about(o, s, &order);
     write_array(o, "positions", records_of_positions(s, 0));
@@ -134,7 +95,6 @@ void html_write(output *o, const shown_mesh *s) {
         const shown_array shown = {s, s->arrays[n]};
         if (s->arrays[n].role == ROLE_NORMALS) write_array(o, "normals", records_of_values(&shown));
     }
-    if (order.triangles) triangles.encode = encode_ordered, triangles.source = &order;
-    write_array(o, "triangles", triangles);
-    free(order.triangles);
+    write_array(o, "triangles", records_of_ordered(s, &order));
+    label_order_release(&order);
 }

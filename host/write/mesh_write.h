@@ -31,7 +31,7 @@
     ROW(stl, "STL", 0, 0, triangles, NULL, CORNERS)                                                                    \
     ROW(obj, "OBJ", HAS_NORMALS, 1, vertices, NULL, NOT)                                                               \
     ROW(off, "OFF", 0, 1, vertices, NULL, NOT)                                                                         \
-    ROW(glb, "GLB", HAS_NORMALS, 0, vertices, glb_fits, NOT)                                                           \
+    ROW(glb, "GLB", HAS_NORMALS | HAS_LABELS, 0, vertices, glb_fits, NOT)                                              \
     ROW(html, "HTML", HAS_NORMALS | HAS_LABELS, 0, vertices, html_fits, NOT)                                           \
     ROW(npz, "NPZ", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, vertices, NULL, NOT)                                       \
     ROW(vtkhdf, "VTKHDF", HAS_NORMALS | HAS_DATA | HAS_LABELS, 1, nothing, NULL, NUMBERS)

@@ -120,11 +120,14 @@ def read_glb(path):
     description, binary = glb_parts(path)
     if not binary:
         return [], [], "fff"
-    primitive = description["meshes"][0]["primitives"][0]
-    vectors = description["bufferViews"][primitive["attributes"]["POSITION"]]
-    indices = description["bufferViews"][primitive["indices"]]
-    points, corners = (struct.unpack_from(f"<{view['byteLength'] // 4}{code}", binary, view["byteOffset"])
-                       for view, code in ((vectors, "f"), (indices, "I")))
+    primitives = description["meshes"][0]["primitives"]
+
+    def numbers(accessor, code, width):
+        a = description["accessors"][accessor]
+        start = description["bufferViews"][a["bufferView"]]["byteOffset"] + a.get("byteOffset", 0)
+        return struct.unpack_from(f"<{width * a['count']}{code}", binary, start)
+    [points] = {numbers(primitive["attributes"]["POSITION"], "f", 3) for primitive in primitives}
+    corners = [corner for primitive in primitives for corner in numbers(primitive["indices"], "I", 1)]
     return list(zip(*[iter(points)] * 3)), list(zip(*[iter(corners)] * 3)), "fff"
 
 

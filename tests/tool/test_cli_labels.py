@@ -9,7 +9,7 @@ import sys
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "common"))
 import tool_case
-from meshes import READERS, read_labels
+from meshes import READERS, glb_parts, read_labels
 from grid_files import data_array, structured_text, vti_text, vts_text
 from tool_case import GridCase
 
@@ -180,15 +180,24 @@ class Files(LabelCase):
                 self.assertTrue(inner and (not outer or inner < outer), (inner, outer))
             self.expect_volumes(points, triangles, labels)
 
-    def test_page(self):
-        """The triangles of the page are those of PLY, pair by pair of labels; no pair comes twice."""
-        pages, others = ([], [])
-        for ending, found in (("html", pages), ("ply", others)):
-            path = self.path(f"all.{ending}")
-            self.labels(self.raw_blocks(), "-o", path)
-            found += zip(read_labels(path), READERS[ending](path)[1])
-        self.assertEqual(pages, sorted(others, key=lambda triangle: triangle[0]))
-        self.assertGreater(len({labels for labels, _ in pages}), 4)
+    def test_shown(self):
+        """The triangles of a page and of GLB are those of PLY, pair by pair of labels; no pair comes twice. GLB has a
+        material for each label, that of the inner side."""
+        triangles = {}
+        for ending in ("html", "glb", "ply"):
+            self.labels(self.raw_blocks(), "-o", self.path(f"all.{ending}"))
+            triangles[ending] = READERS[ending](self.path(f"all.{ending}"))[1]
+        ordered = sorted(zip(read_labels(self.path("all.ply")), triangles["ply"]), key=lambda triangle: triangle[0])
+        self.assertEqual(list(zip(read_labels(self.path("all.html")), triangles["html"])), ordered)
+        self.assertEqual(triangles["glb"], [triangle for _, triangle in ordered])
+        self.assertGreater(len({labels for labels, _ in ordered}), 4)
+        description = glb_parts(self.path("all.glb"))[0]
+        inner = collections.Counter(labels[0] for labels, _ in ordered)
+        materials = [description["materials"][p["material"]] for p in description["meshes"][0]["primitives"]]
+        self.assertEqual([material["name"] for material in materials], [f"label {label}" for label in sorted(inner)])
+        self.assertEqual(len({str(material["pbrMetallicRoughness"]) for material in materials}), len(inner))
+        counts = [description["accessors"][p["indices"]]["count"] for p in description["meshes"][0]["primitives"]]
+        self.assertEqual(counts, [3 * inner[label] for label in sorted(inner)])
 
     def test_separate(self):
         report = self.labels(self.raw_blocks(), "--smooth", "0", "--separate", "-o", self.path("part-%.stl"))

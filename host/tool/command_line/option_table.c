@@ -69,9 +69,9 @@ const option option_table[] = {
      "samples count as background, which is 0"},
     {"--output", "-o", "FILE", COMMAND_LABELS, VALUE_TEXT, IN(output), NULL,
      "mesh to write: .ply, .vtp, .npz or .vtkhdf, with the two labels of every\n"
-     "triangle; .html, a page that shows each label in a colour of its own; .stl,\n"
-     ".obj, .off or .glb (left out: only the report); - is standard output (give\n"
-     "--format)"},
+     "triangle; .html, a page, or .glb, which show each label in a colour of its\n"
+     "own; .stl, .obj or .off (left out: only the report); - is standard output\n"
+     "(give --format)"},
     {"--format", NULL, "F", COMMAND_LABELS, VALUE_FORMAT, IN(format), format_choices,
      "ply, vtp, stl, obj, off, glb, html, npz or vtkhdf, whatever FILE ends in"},
     {"--separate", NULL, NULL, COMMAND_LABELS, VALUE_NONE, IN(separate_labels), NULL,

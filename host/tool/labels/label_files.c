@@ -75,9 +75,9 @@ void label_files_tell(const options *o, const tc_mesh_data *mesh) {
     const mesh_write_options how = write_options(o);
     if (!o->output) return;
     if (!o->separate_labels && mesh_write_lacks_labels(o->output, &how))
-        notice(
-            "%s: the format does not say which labels a triangle lies between: PLY, VTP, HTML, NPZ and VTKHDF do, or "
-            "--separate writes a file for each label",
-            o->output);
+        notice("%s: the format does not say which labels a triangle lies between: PLY, VTP, NPZ and VTKHDF do, GLB and "
+               "HTML show them, or "
+               "--separate writes a file for each label",
+               o->output);
     if (mesh_write_is_relative(o->output, mesh, &how)) surface_files_tell_relative(mesh->origin, 0);
 }
