@@ -227,6 +227,8 @@ FILES = {
     "host/check/mesh_distance.c": ["test_simplify", "test_simplified"],
     "host/check/": ["test_check", "test_check_blocks"],
     "host/repair/mesh_labels.c": ["test_cli_labels"],
+    "host/write/label_order.c": ["test_cli_labels"],
+    "host/common/label_colour.h": ["test_cli_preview", "test_cli_labels"],
     "host/repair/surface_faults.c": ["test_simplify", "test_simplified, faults"],
     "host/repair/mesh_simplify.c": ["test_simplified, faults", "test_simplified"],
     "host/repair/edge_contraction.c": ["test_simplified"],
