@@ -126,9 +126,9 @@ static void add_accessors(file_text *t, const label_order *order, const glb_view
                  (unsigned long long)views[n].records.span.count, views[n].bounds);
     for (glb_primitive p = {0}; next_primitive(order, &p);) {
         text_add(t, "%s{\"bufferView\":%d,", p.first ? "," : "", count - 1);
-        if (p.first) text_add(t, "\"byteOffset\":%llu,", (unsigned long long)(12 * p.first));
+        if (p.first) text_add(t, "\"byteOffset\":%llu,", 12ull * p.first);
         text_add(t, "\"componentType\":%d,\"count\":%llu,\"type\":\"SCALAR\"}", GL_UNSIGNED_INT,
-                 (unsigned long long)(3 * (p.end - p.first)));
+                 3ull * (p.end - p.first));
     }
     text_add(t, "],\"bufferViews\":[");
     for (int n = 0; n < count; n++) {

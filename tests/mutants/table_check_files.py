@@ -326,7 +326,7 @@ MUTANTS = [
            ("(vectors * file_vertex_count(s) + s", "(file_vertex_count(s) + s", "GLB: bytes of normals"),
            ("offset += bytes;", "", "GLB: views that all begin in front"),
            ("vectors > 1 ?", "vectors > 2 ?", "GLB: normals that are not named"),
-           ("(12 * p.first)", "(4 * p.first)", "GLB: labels that begin elsewhere", {"tests": ("test_cli_labels",)}),
+           ("12ull * p.first", "4ull * p.first", "GLB: labels that begin elsewhere", {"tests": ("test_cli_labels",)}),
            ("return is_empty(s) ? 0 : (", "return (", "GLB: arrays of nothing")),
     *group("host/write/html.c",
            ("if (records->encode)", "if (records->encode && first)", "page: records of the mesh in place of those shown"),
