@@ -236,11 +236,12 @@ static int begin(stream_job *j, surface_report *surfaces) {
     const stream_input *in = j->in;
     const scalar_block *from = in->blocks->blocks->scalar;
     tc_grid_options whole;
-    j->count = in->o->isovalue_count;
-    j->how = calloc(j->count, sizeof *j->how);
-    j->surfaces = calloc(j->count, sizeof *j->surfaces);
-    j->shared = calloc(j->count, sizeof *j->shared);
+    const size_t count = in->o->isovalue_count;
+    j->how = calloc(count, sizeof *j->how);
+    j->surfaces = calloc(count, sizeof *j->surfaces);
+    j->shared = calloc(count, sizeof *j->shared);
     if (!j->how || !j->surfaces || !j->shared) return fail(STATUS_FAILED, "out of memory for the surfaces");
+    j->count = count;
     block_describe(in->blocks, 0, &j->grid, &whole);
     j->samples = from->samples;
     j->blanked_samples = from->blanked_points;
