@@ -44,23 +44,32 @@ static void end_trial(group_progress *p, trial_end end, const char *text) {
     p->name[0] = '\0';
 }
 
+/* Of a line "WORD NUMBER TEXT" the text, and its number; NULL of another line. */
+static const char *text_of(const char *line, const char *word, int *number) {
+    const size_t length = strlen(word);
+    char *end;
+    if (strncmp(line, word, length) != 0) return NULL;
+    const long value = strtol(line + length, &end, 10);
+    if (end == line + length || (*end && *end != ' ')) return NULL;
+    *number = (int)value;
+    return *end ? end + 1 : end;
+}
+
 static void take_line(void *user, const char *line) {
     group_progress *p = user;
-    int number = 0, at = 0;
-    if (sscanf(line, "trial %d %n", &number, &at) == 1 && at) {
-        p->number = number;
+    const char *text;
+    if ((text = text_of(line, "trial ", &p->number))) {
         p->begin_ms = now_ms();
-        snprintf(p->name, sizeof p->name, "%s", line + at);
+        snprintf(p->name, sizeof p->name, "%s", text);
     } else if (strcmp(line, "ok") == 0) {
         end_trial(p, TRIAL_OK, "");
     } else if (strncmp(line, "failed ", 7) == 0) {
         end_trial(p, TRIAL_FAILED, line + 7);
     } else if (strncmp(line, "skipped ", 8) == 0) {
         end_trial(p, TRIAL_SKIPPED, line + 8);
-    } else if (sscanf(line, "end %d %n", &number, &at) == 1 && at) {
+    } else if ((text = text_of(line, "end ", &p->status))) {
         p->has_ended = 1;
-        p->status = number;
-        snprintf(p->text, sizeof p->text, "%s", line + at);
+        snprintf(p->text, sizeof p->text, "%s", text);
     }
 }
 

@@ -188,7 +188,7 @@ static tc_status slab_classify(label_run *r, label_slab *part, label_job *job) {
     tc_status status = samples_load(r, part, job);
     if (!status) status = work_reserve(r, job);
     if (status) return status;
-    const cl_mem samples = r->whole ? r->whole : w->samples.memory;
+    cl_mem samples = r->whole ? r->whole : w->samples.memory;
     const kernel_argument arguments[] = {ARGUMENT(*job),
                                          ARGUMENT(samples),
                                          ARGUMENT(w->words.memory),
@@ -244,7 +244,7 @@ static tc_status slabs_count(label_run *r, label_job *job) {
 
 static tc_status emit_launch(const label_run *r, const label_job *job) {
     const label_buffers *w = r->work;
-    const cl_mem samples = r->whole ? r->whole : w->samples.memory;
+    cl_mem samples = r->whole ? r->whole : w->samples.memory;
     const kernel_argument arguments[] = {ARGUMENT(*job),
                                          ARGUMENT(samples),
                                          ARGUMENT(w->words.memory),

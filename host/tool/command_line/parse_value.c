@@ -80,7 +80,7 @@ static int append_range(const char *text, options *o) {
                     text);
     if (!(fresh.low < fresh.high))
         return fail(STATUS_USAGE, "--range: '%s': the first number has to be less than the second", text);
-    strcpy(fresh.text, text);
+    snprintf(fresh.text, sizeof fresh.text, "%s", text);
     typed_range *grown = realloc(o->ranges, (o->range_count + 1) * sizeof *grown);
     if (!grown) return fail(STATUS_FAILED, "out of memory for the ranges");
     o->ranges = grown;

@@ -71,6 +71,10 @@ static int origin_suits(const cell_range *cells, const double origin[3]) {
     return 1;
 }
 
+static int origins_are_same(const double a[3], const double b[3]) {
+    return a[0] == b[0] && a[1] == b[1] && a[2] == b[2];
+}
+
 /* Gives block n, which has an origin of its own, the origin of the first block before it that suits it too. */
 static int share_origin(const options *o, const block_list *blocks, int n, engine *e) {
     double *own = e->parts[n].origin;
@@ -78,7 +82,7 @@ static int share_origin(const options *o, const block_list *blocks, int n, engin
     int first = 0;
     cell_range_find(&blocks->blocks[n], 0, &cells);
     while (first < n && (!e->grids[first] || !origin_suits(&cells, e->parts[first].origin))) first++;
-    if (memcmp(own, e->parts[first].origin, sizeof e->parts[first].origin) == 0) return 0;
+    if (origins_are_same(own, e->parts[first].origin)) return 0;
     memcpy(own, e->parts[first].origin, sizeof e->parts[first].origin);
     tc_grid_destroy(e->grids[n]);
     e->grids[n] = NULL;
@@ -103,7 +107,7 @@ int engine_origins_differ(const engine *e, block_range blocks) {
     const mesh_part *first = NULL;
     for (int n = blocks.first; n < blocks.first + blocks.count; n++) {
         if (!e->parts[n].vertex_count) continue;
-        if (first && memcmp(first->origin, e->parts[n].origin, sizeof first->origin) != 0) return 1;
+        if (first && !origins_are_same(first->origin, e->parts[n].origin)) return 1;
         first = &e->parts[n];
     }
     return 0;
