@@ -240,6 +240,10 @@ class Page(GridCase):
         click(1)
         self.assertEqual(hues(), both)
         self.expect_quiet(path)
+        self.expect(0, "labels", *raw, "--separate", "--engine", "reference", "--quiet", "-o", self.path("box%.html"))
+        browser.show(self.path("box1.html"))  # of one label: nothing to choose
+        self.assertIs(browser.run("document.querySelector('ul').hidden"), True)
+        self.assertEqual(sum(hues()) > 5000 and hues().index(max(hues())), of_first)
 
     def test_empty(self):
         browser = self.begin()
