@@ -8,12 +8,17 @@
 #include <stdlib.h>
 #include <string.h>
 
-int surface_preview_check(const options *o, const dataset *d) {
+int preview_check(const options *o) {
     if (!o->preview) return 0;
     int status = picture_check("--preview", o->preview);
     if (!status && o->output && strcmp(o->output, o->preview) == 0)
         status = fail(STATUS_USAGE, "-o and --preview both name %s: name two files", o->output);
-    return status ? status : surface_names_check(o, d, "--preview", o->preview);
+    return status;
+}
+
+int surface_preview_check(const options *o, const dataset *d) {
+    const int status = preview_check(o);
+    return status || !o->preview ? status : surface_names_check(o, d, "--preview", o->preview);
 }
 
 int preview_write(const options *o, const char *path, const tc_mesh_data *mesh, const mesh_part *parts, int part_count,

@@ -14,6 +14,9 @@
  * where a file cannot be written. d is NULL before the input is read. */
 int surface_preview_check(const options *o, const dataset *d);
 
+/* Whether --preview can name a picture, another file than -o does. 0 or STATUS_USAGE. */
+int preview_check(const options *o);
+
 /* Draws a mesh, in parts as in mesh_write_options, into a file that waits in the group. */
 int preview_write(const options *o, const char *path, const tc_mesh_data *mesh, const mesh_part *parts, int part_count,
                   output_group *group);

@@ -3,17 +3,16 @@
 #include "command_line/name_pattern.h"
 #include "exit_status.h"
 #include "extract/surface_files.h"
+#include "extract/surface_preview.h"
 #include "failure.h"
 #include "input/input.h"
 #include "mesh_write.h"
 #include "output.h"
-#include "picture.h"
 #include "terminal/notice.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static mesh_write_options write_options(const options *o) {
     return (mesh_write_options){.format = o->format,
@@ -33,17 +32,10 @@ static int check_one_file(const options *o, const dataset *d, const char *option
     return status;
 }
 
-static int check_preview(const options *o, const dataset *d) {
-    if (!o->preview) return 0;
-    int status = picture_check("--preview", o->preview);
-    if (!status && o->output && !o->separate_labels && strcmp(o->output, o->preview) == 0)
-        status = fail(STATUS_USAGE, "-o and --preview both name %s: name two files", o->output);
-    return status ? status : check_one_file(o, d, "--preview", o->preview);
-}
-
 int label_files_check(const options *o, const dataset *d) {
     const mesh_write_options how = write_options(o);
-    int status = check_preview(o, d);
+    int status = preview_check(o);
+    if (!status && o->preview) status = check_one_file(o, d, "--preview", o->preview);
     if (status || !o->output) return status;
     status = mesh_write_check(o->output, &how);
     if (!status && o->separate_labels && !output_is_file(o->output))
