@@ -66,10 +66,10 @@ class Tetrahedra(Image):
 
     def __init__(self, arguments, folder, field):
         small = argparse.Namespace(**{**vars(arguments), "dims": arguments.unstructured})
-        place = os.path.join(folder, "unstructured")
-        os.makedirs(place, exist_ok=True)
-        super().__init__(small, place, field)
-        path = os.path.join(place, f"{field}.vtu")
+        own = os.path.join(folder, "unstructured")
+        os.makedirs(own, exist_ok=True)
+        super().__init__(small, own, field)
+        path = os.path.join(own, f"{field}.vtu")
         subprocess.run([arguments.tool, "tetrahedralize", *self.input, "-o", path, "--quiet"], check=True)
         self.input = [path]
         reader = vtkXMLUnstructuredGridReader()

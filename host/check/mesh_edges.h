@@ -7,8 +7,8 @@
 #include <stdint.h>
 
 typedef struct mesh_edges {
-    uint64_t border; /* a sum of hashes over the edges with one triangle, of the places of their ends and the direction:
-                        the same for the same border, in whatever order and with whatever triangles */
+    uint64_t border; /* a sum of hashes over the edges with one triangle, of the positions of their ends and the
+                        direction: the same for the same border, in whatever order and with whatever triangles */
     uint64_t folded; /* edges whose two triangles lie folded onto each other: the cosine of the angle between their
                         normals is below fold_cosine. Triangles without area have no normal */
 } mesh_edges;

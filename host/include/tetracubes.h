@@ -302,8 +302,8 @@ typedef enum tc_method {
                              ambiguous the tetrahedra decide, so that the topology is theirs. Unstructured grids: see
                              `source` of tc_tetrahedra_grid_options */
     TC_METHOD_SNAP = 2,   /* structured grids: as tetra, but samples near the surface become vertices of it where the
-                             topology stays: of smooth fields 0.22 to 0.3 of the triangles, of better shape; of noise, and
-                             of   samples in few steps, more */
+                             topology stays: of smooth fields 0.22 to 0.37 of the triangles, of better shape; of noise,
+                             and of samples in few steps, more */
 } tc_method;
 
 /* "tetra", "hybrid", "snap", valid forever; NULL for a value that is no method. */
@@ -411,11 +411,11 @@ TC_API void tc_labels_options_init(tc_labels_options *options);
  * without smoothing is that of tc_extract of samples 0 and 1 at 0.5, to the byte.
  *
  * Smoothing moves every vertex three quarters of the way to the mean of its neighbours, `smoothing` times, but no
- * farther from its place than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours there
- * count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label segmentations",
- * 2022). It runs on threads of the host, whose number changes nothing. The context keeps the memory for that, about as
- * much as the mesh takes, which the system may take back. There are no normals, and tc_interpolate_field does not know
- * these vertices.
+ * farther from where it was made than 0.45 cells along each axis. Where surfaces meet, and at borders, only neighbours
+ * there count (after Gibson, "Constrained elastic surface nets", 1998; Frisken, "SurfaceNets for multi-label
+ * segmentations", 2022). It runs on threads of the host, whose number changes nothing. The context keeps the memory for
+ * that, about as much as the mesh takes, which the system may take back. There are no normals, and tc_interpolate_field
+ * does not know these vertices.
  *
  * Kernels make the surfaces of uniform grids; of others both engines do it on the host. *mesh as in tc_extract; active
  * cells are cubes with more than one label. TC_ERROR_ARGUMENT for other grids; TC_ERROR_LIMIT for more than 2^32 - 1

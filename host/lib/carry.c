@@ -44,7 +44,7 @@ tc_status tc_interpolate_field(tc_grid *grid, const tc_extract_options *options,
     if (!status) status = context_check(grid->context);
     if (!status) status = surface_find(grid, &o);
     if (!status) status = surface_carry(grid, &o, &c, &vertex_count);
-    if (!status && (vertex_count != c.room || value_count % components))
+    if (!status && (vertex_count != c.capacity || value_count % components))
         status = (tc_status)fail(TC_ERROR_ARGUMENT, "room for %llu values, but %llu vertices of %llu each",
                                  (unsigned long long)value_count, (unsigned long long)vertex_count,
                                  (unsigned long long)components);

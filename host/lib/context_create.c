@@ -86,7 +86,7 @@ static tc_status opencl_begin(tc_context *context, const tc_context_options *o) 
     return status ? status : tuning_choose(&context->expert, &context->info, &context->launch);
 }
 
-static tc_status context_make(const tc_context_options *options, bool is_trial, tc_context **out) {
+static tc_status context_make(const tc_context_options *options, bool for_trial, tc_context **out) {
     tc_context_options o;
     tc_expert_options expert;
     if (!out) return (tc_status)fail(TC_ERROR_ARGUMENT, "tc_context_create needs a place for the context");
@@ -105,7 +105,7 @@ static tc_status context_make(const tc_context_options *options, bool is_trial, 
     context->options = o;
     context->progress_share = 1;
     context->expert = expert;
-    context->is_trial = is_trial;
+    context->for_trial = for_trial;
     context->options.device = NULL;
     context->options.cl_context = NULL;
     context->options.cl_queue = NULL;

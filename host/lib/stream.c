@@ -84,7 +84,7 @@ void tc_stream_options_init(tc_stream_options *options) {
 static bool is_curvilinear(const stream *s) { return s->whole.points || s->whole.points_f64; }
 
 /* Origin and winding of a curvilinear grid follow from all of its points that are not missing. */
-static tc_status curvilinear_place(stream *s) {
+static tc_status curvilinear_describe(stream *s) {
     tc_grid whole = {.context = s->context};
     if (!is_curvilinear(s)) return TC_OK;
     const tc_status status = grid_describe(&s->whole, &whole);
@@ -127,7 +127,7 @@ static tc_status options_take(stream *s, const tc_stream_options *options) {
     if (!status && s->o.grid) status = struct_copy_in(&s->whole, sizeof s->whole, s->o.grid, "grid options");
     if (!status) status = options_check(s);
     if (!status) status = owned_take(s);
-    if (!status) status = curvilinear_place(s);
+    if (!status) status = curvilinear_describe(s);
     if (status) return status;
     s->surfaces = calloc(s->o.surface_count, sizeof *s->surfaces);
     s->totals = calloc(s->o.surface_count, sizeof *s->totals);

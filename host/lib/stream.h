@@ -1,5 +1,5 @@
 /*
- * stream.h - a stream under way (stream.c): the grid, its surfaces, and the units that they are made of
+ * stream.h - a stream under way (stream.c): the grid, its surfaces, and the units that the grid is cut into
  */
 #ifndef STREAM_H
 #define STREAM_H
@@ -15,7 +15,7 @@ typedef struct unit_surface {
     uint32_t *seam; /* NULL: no vertex has a number */
 } unit_surface;
 
-/* Planes first to end - 1 of the whole are its own. */
+/* A piece (tc_extract_piece) whose samples are in memory together. It owns planes first to end - 1 of the whole. */
 typedef struct unit {
     int64_t first, end;
     unit_surface *surfaces;
@@ -30,11 +30,11 @@ typedef struct stream {
     uint32_t *no_vertices; /* a seam */
     uint64_t seam_size;
     unit *units;
-    size_t unit_count, unit_room;
-    size_t own_units; /* without the one behind */
+    size_t unit_count, unit_capacity;
+    size_t own_units; /* all but the unit behind what the stream owns, which gives its seam */
     int64_t halo[2];
     uint64_t plane_bytes[ARRAY_COUNT];
-    host_block room[ARRAY_COUNT]; /* for what the source does not have in memory */
+    host_block held[ARRAY_COUNT]; /* for what the source does not have in memory */
     uint64_t mesh_bytes;          /* of a piece, at most, where that can be had */
     tc_grid *grid;                /* of the unit in memory */
     bool mirrored;                /* of a curvilinear grid: the whole */

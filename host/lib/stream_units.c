@@ -28,9 +28,9 @@ void stream_grid_close(stream *s) {
 static tc_status planes_read(stream *s, int64_t first, int64_t end, tc_planes *planes) {
     void *memory[ARRAY_COUNT] = {NULL};
     for (int array = 0; array < ARRAY_COUNT; array++) {
-        tc_status status = host_block_reserve(&s->room[array], (uint64_t)(end - first) * s->plane_bytes[array]);
+        tc_status status = host_block_reserve(&s->held[array], (uint64_t)(end - first) * s->plane_bytes[array]);
         if (status) return status;
-        if (s->plane_bytes[array]) memory[array] = s->room[array].memory;
+        if (s->plane_bytes[array]) memory[array] = s->held[array].memory;
     }
     *planes = (tc_planes){.struct_size = sizeof *planes,
                           .first = first,
@@ -80,12 +80,12 @@ static void unit_release(unit *u, size_t surface_count) {
 }
 
 static tc_status unit_add(stream *s, int64_t first, int64_t end) {
-    if (s->unit_count == s->unit_room) {
-        const size_t room = 2 * s->unit_room + 16;
-        unit *grown = realloc(s->units, room * sizeof *grown);
+    if (s->unit_count == s->unit_capacity) {
+        const size_t capacity = 2 * s->unit_capacity + 16;
+        unit *grown = realloc(s->units, capacity * sizeof *grown);
         if (!grown) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the pieces of a stream");
         s->units = grown;
-        s->unit_room = room;
+        s->unit_capacity = capacity;
     }
     unit *u = &s->units[s->unit_count];
     *u = (unit){first, end, calloc(s->o.surface_count, sizeof *u->surfaces)};
@@ -196,6 +196,6 @@ tc_status stream_count(stream *s, int64_t window) {
 void stream_units_release(stream *s) {
     stream_grid_close(s);
     for (size_t n = 0; n < s->unit_count; n++) unit_release(&s->units[n], s->o.surface_count);
-    for (int array = 0; array < ARRAY_COUNT; array++) host_block_release(&s->room[array]);
+    for (int array = 0; array < ARRAY_COUNT; array++) host_block_release(&s->held[array]);
     free(s->units);
 }

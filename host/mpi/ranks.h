@@ -3,7 +3,7 @@
  *
  * Waiting looks for signals, as mpirun ends all ranks by one where a rank was killed; a thread ends a rank that hangs
  * in a call by then. Unfinished files are removed by whoever ends. What a rank sends is counted. Files are written by
- * MPI-IO: opened and closed by all ranks together, written in large blocks by each at its places.
+ * MPI-IO: opened and closed by all ranks together, written in large blocks by each at its offsets.
  */
 #ifndef RANKS_H
 #define RANKS_H

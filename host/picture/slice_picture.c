@@ -29,27 +29,27 @@ typedef struct between {
 } between;
 
 static double extent_of(const sliced_volume *v, int axis) {
-    return v->places[axis][v->count[axis] - 1] - v->places[axis][0];
+    return v->positions[axis][v->count[axis] - 1] - v->positions[axis][0];
 }
 
-static between between_of(const sliced_volume *v, int axis, double place) {
-    const double *places = v->places[axis];
+static between between_of(const sliced_volume *v, int axis, double position) {
+    const double *positions = v->positions[axis];
     int64_t low = 0, high = v->count[axis] - 1;
     while (high - low > 1) {
         const int64_t middle = low + (high - low) / 2;
-        if (places[middle] <= place)
+        if (positions[middle] <= position)
             low = middle;
         else
             high = middle;
     }
-    const double gap = places[high] - places[low], part = gap > 0 ? (place - places[low]) / gap : 0;
+    const double gap = positions[high] - positions[low], part = gap > 0 ? (position - positions[low]) / gap : 0;
     return (between){low, high, part > 0 ? part < 1 ? part : 1 : 0};
 }
 
 /* The middles of `pixels` pixels over the whole axis. */
 static void spread(const sliced_volume *v, int axis, int pixels, between *out) {
     for (int n = 0; n < pixels; n++)
-        out[n] = between_of(v, axis, v->places[axis][0] + extent_of(v, axis) * ((n + 0.5) / pixels));
+        out[n] = between_of(v, axis, v->positions[axis][0] + extent_of(v, axis) * ((n + 0.5) / pixels));
 }
 
 /* NaN: missing. */

@@ -2,8 +2,8 @@
  * slice_picture.h - three slices through the middle of a volume, as one picture, with isolines
  *
  * From above (x right, y up) at the top left; below it from the front (x right, z up), and beside that from the right
- * (y right, z up), all at one scale, so that places line up. Samples are grey, with linear interpolation between them;
- * where one of the four around a place is missing, the picture is pale yellow.
+ * (y right, z up), all at one scale, so that positions line up. Samples are grey, with linear interpolation between
+ * them; where one of the four around a point is missing, the picture is pale yellow.
  */
 #ifndef SLICE_PICTURE_H
 #define SLICE_PICTURE_H
@@ -21,7 +21,7 @@ typedef struct sliced_volume {
 
     int64_t count[3], stride[3]; /* samples along each axis, and from one to the next in memory */
     int64_t first;               /* the sample that is first along all three */
-    const double *places[3];     /* of the samples along each axis, rising */
+    const double *positions[3];  /* of the samples along each axis, rising */
     double black, white;         /* values */
 } sliced_volume;
 

@@ -19,10 +19,10 @@ static int64_t side_bias(const corner *a, const corner *b) {
     return is_left || is_top ? 0 : -1;
 }
 
-static void key_lower(_Atomic uint64_t *place, uint64_t key) {
-    uint64_t there = atomic_load_explicit(place, memory_order_relaxed);
+static void key_lower(_Atomic uint64_t *pixel, uint64_t key) {
+    uint64_t there = atomic_load_explicit(pixel, memory_order_relaxed);
     while (key < there &&
-           !atomic_compare_exchange_weak_explicit(place, &there, key, memory_order_relaxed, memory_order_relaxed)) {
+           !atomic_compare_exchange_weak_explicit(pixel, &there, key, memory_order_relaxed, memory_order_relaxed)) {
     }
 }
 

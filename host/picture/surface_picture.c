@@ -63,9 +63,9 @@ static void find_bounds(void *shared) {
                        end = begin + (left < SHARE_VERTICES ? left : SHARE_VERTICES);
         const scene_part *part = s->parts;
         for (uint64_t v = begin; v < end; v++) {
-            double place[3];
+            double position[3];
             while (v >= part->vertex_end) part++;
-            if (scene_place(s, part, v, place)) bounds_add(own, place, place);
+            if (scene_position(s, part, v, position)) bounds_add(own, position, position);
         }
     }
     pthread_mutex_lock(&j->lock);

@@ -3,8 +3,8 @@
  *
  * The mesh is fitted into the picture, centred, with a margin. Every pixel has SAMPLES x SAMPLES samples. What a sample
  * shows is the triangle of least depth at it, of equal depths the first one; neighbours leave no gap and no overlap, as
- * places are whole multiples of 1/256 of a sample (surface_draw.c). Sides that triangles turn to the outside are blue,
- * inner sides ochre; where triangles lie between labels, each label has a colour of its own.
+ * positions are whole multiples of 1/256 of a sample (surface_draw.c). Sides that triangles turn to the outside are
+ * blue, inner sides ochre; where triangles lie between labels, each label has a colour of its own.
  *
  * Normals are those of the mesh where it has some, else the mean of the triangles around a vertex, by their area; where
  * that is far from the triangle's own normal, at an edge or a corner, the triangle's own.

@@ -1,8 +1,8 @@
 /*
  * surface_scene.h - a mesh in the space of a picture; for surface_picture.c and its stages
  *
- * A place in that space is x to the right, y up, z towards the viewer, in the mesh's units, relative to the origin of
- * the mesh's first part.
+ * A position in that space is x to the right, y up, z towards the viewer, in the mesh's units, relative to the origin
+ * of the mesh's first part.
  */
 #ifndef SURFACE_SCENE_H
 #define SURFACE_SCENE_H
@@ -14,7 +14,7 @@
 
 enum {
     SAMPLES = 2,     /* of a pixel, along either side */
-    STEPS = 256,     /* of a sample: places of corners are multiples of its STEPS-th part */
+    STEPS = 256,     /* of a sample: positions of corners are multiples of its STEPS-th part */
     DEPTH_BITS = 30, /* of a key; the rest is the triangle's number */
     SHARE_TRIANGLES = 1 << 15,
     SHARE_VERTICES = 1 << 16,
@@ -55,8 +55,8 @@ static inline void scene_turn(const scene *s, const float vector[3], double out[
                    s->rows[row][2] * (double)vector[2];
 }
 
-/* The place of a vertex. Returns whether it is finite. */
-static inline int scene_place(const scene *s, const scene_part *part, uint64_t vertex, double out[3]) {
+/* The position of a vertex. Returns whether it is finite. */
+static inline int scene_position(const scene *s, const scene_part *part, uint64_t vertex, double out[3]) {
     scene_turn(s, s->mesh->positions + 3 * vertex, out);
     for (int axis = 0; axis < 3; axis++) out[axis] += part->offset[axis];
     return isfinite(out[0]) && isfinite(out[1]) && isfinite(out[2]);
@@ -65,18 +65,18 @@ static inline int scene_place(const scene *s, const scene_part *part, uint64_t v
 /* The corners of a triangle; 0 where one is not finite. */
 static inline int scene_corners(const scene *s, const scene_part *part, uint64_t triangle, corner out[3]) {
     for (int n = 0; n < 3; n++) {
-        double place[3];
-        if (!scene_place(s, part, s->mesh->triangles[3 * triangle + (uint64_t)n], place)) return 0;
-        const double x = place[0] - (s->bounds[0][0] + (s->bounds[1][0] - s->bounds[0][0]) / 2);
-        const double y = place[1] - (s->bounds[0][1] + (s->bounds[1][1] - s->bounds[0][1]) / 2);
+        double position[3];
+        if (!scene_position(s, part, s->mesh->triangles[3 * triangle + (uint64_t)n], position)) return 0;
+        const double x = position[0] - (s->bounds[0][0] + (s->bounds[1][0] - s->bounds[0][0]) / 2);
+        const double y = position[1] - (s->bounds[0][1] + (s->bounds[1][1] - s->bounds[0][1]) / 2);
         out[n].x = (int64_t)floor(x * s->scale * STEPS + 0.5) + s->width * (STEPS / 2);
         out[n].y = (int64_t)floor(-y * s->scale * STEPS + 0.5) + s->height * (STEPS / 2);
-        out[n].depth = (s->bounds[1][2] - place[2]) * s->depth_scale;
+        out[n].depth = (s->bounds[1][2] - position[2]) * s->depth_scale;
     }
     return 1;
 }
 
-/* Twice the area of the triangle of a, b and a place among the samples; positive where it runs clockwise, as y is down.
+/* Twice the area of the triangle of a, b and a point among the samples; positive where it runs clockwise, as y is down.
  */
 static inline int64_t corner_area(const corner *a, const corner *b, int64_t x, int64_t y) {
     return (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x);

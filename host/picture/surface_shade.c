@@ -38,11 +38,11 @@ static int make_unit(double v[3]) {
 
 /* The triangle's own normal in the picture's space, counter-clockwise seen from its outer side. */
 static void face_normal(const scene *s, const scene_part *part, uint64_t triangle, double out[3]) {
-    double places[3][3], a[3], b[3];
-    for (int n = 0; n < 3; n++) scene_place(s, part, s->mesh->triangles[3 * triangle + (uint64_t)n], places[n]);
+    double positions[3][3], a[3], b[3];
+    for (int n = 0; n < 3; n++) scene_position(s, part, s->mesh->triangles[3 * triangle + (uint64_t)n], positions[n]);
     for (int axis = 0; axis < 3; axis++) {
-        a[axis] = places[1][axis] - places[0][axis];
-        b[axis] = places[2][axis] - places[0][axis];
+        a[axis] = positions[1][axis] - positions[0][axis];
+        b[axis] = positions[2][axis] - positions[0][axis];
     }
     for (int axis = 0; axis < 3; axis++) {
         const int y = (axis + 1) % 3, z = (axis + 2) % 3;

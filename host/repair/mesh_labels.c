@@ -11,9 +11,9 @@
 #include <string.h>
 
 typedef struct label_entry {
-    uint32_t label; /* 0: a free place, as the background is not looked up */
+    uint32_t label; /* 0: a free entry, as the background is not looked up */
     uint64_t count;
-    size_t place; /* in the sorted list */
+    size_t index; /* in the sorted list */
 } label_entry;
 
 typedef struct label_table {
@@ -75,7 +75,7 @@ static int make_list(label_table *t, mesh_labels *out) {
     qsort(out->labels, out->count, sizeof *out->labels, compare_labels);
     for (size_t n = 0; n < out->count; n++) {
         label_entry *e = &t->entries[find(t, out->labels[n])];
-        e->place = n;
+        e->index = n;
         out->starts[n + 1] = out->starts[n] + e->count;
         e->count = out->starts[n]; /* from here on: where its next triangle goes */
     }
@@ -109,13 +109,13 @@ void mesh_labels_release(mesh_labels *l) {
 
 static int reserve(label_mesh *m, uint64_t triangles) {
     const uint64_t vertices = 3 * triangles; /* at most */
-    if (triangles <= m->triangle_room) return 0;
+    if (triangles <= m->triangle_capacity) return 0;
     label_mesh_release(m);
     m->positions = malloc((size_t)vertices * 3 * sizeof *m->positions);
     m->triangles = malloc((size_t)triangles * 3 * sizeof *m->triangles);
     m->labels = malloc((size_t)triangles * 2 * sizeof *m->labels);
     if (!m->positions || !m->triangles || !m->labels) return out_of_memory();
-    m->triangle_room = triangles;
+    m->triangle_capacity = triangles;
     return 0;
 }
 

@@ -22,7 +22,7 @@ typedef struct label_mesh {
     tc_mesh_data mesh;
     float *positions;
     uint32_t *triangles, *labels;
-    uint64_t triangle_room;
+    uint64_t triangle_capacity;
 } label_mesh;
 
 /* Returns 0, or STATUS_FAILED with its message (failure.h) where memory runs out; to be released in any case. The mesh

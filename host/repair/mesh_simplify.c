@@ -117,7 +117,7 @@ static int lock_coincident(const stage_mesh *m) {
     while (size < 2 * m->vertex_count) size *= 2;
     uint32_t *table = malloc((size_t)size * sizeof *table);
     if (!table)
-        return fail(STATUS_FAILED, "out of memory for the places of %llu vertices",
+        return fail(STATUS_FAILED, "out of memory for the positions of %llu vertices",
                     (unsigned long long)m->vertex_count);
     memset(table, 0xff, (size_t)size * sizeof *table); /* NO_VERTEX */
     for (uint64_t v = 0; v < m->vertex_count; v++) {

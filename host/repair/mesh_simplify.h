@@ -4,7 +4,7 @@
  * Edges are contracted by meshoptimizer, which does not look whether the surface stays what it is. So it is given a
  * surface in stages, each of which halves it, and what it makes is compared with what it got (surface_faults.h). Around
  * each fault vertices are locked, and the stage is done again, until there is none. What comes out is homeomorphic to
- * what went in, has the same border, edge by edge, no edge that is folded and was not, and no vertex in a new place.
+ * what went in, has the same border, edge by edge, no edge that is folded and was not, and no vertex at a new position.
  *
  * Vertices are locked by leaving out their triangles: the vertices around them are then on the border of what the
  * library gets, and stay.

@@ -135,7 +135,7 @@ static void print_image(const facts *f) {
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     part_report_text("part          ", b);
-    describe_place_text(f->d, b);
+    describe_world_text(f->d, b);
     describe_values_text(b);
 }
 

@@ -110,12 +110,12 @@ static int needs_f64(const dataset_block *b) {
 }
 
 /* World coordinate r of a structured grid's point. */
-static double place(const dataset_block *b, const int64_t p[3], int r, int is_f64) {
+static double position_of(const dataset_block *b, const int64_t p[3], int r, int is_f64) {
     if (b->kind == BLOCK_RECTILINEAR) return coordinate_at(b->axes[r], p[r]);
     return is_f64 ? uniform_f64(b, p, r) : (double)uniform_f32(b, p, r);
 }
 
-static void put_place(const complex_file *file, uint64_t n, double value) {
+static void put_coordinate(const complex_file *file, uint64_t n, double value) {
     if (file->points_f64)
         ((double *)(uintptr_t)file->points_f64)[n] = value;
     else
@@ -123,16 +123,16 @@ static void put_place(const complex_file *file, uint64_t n, double value) {
 }
 
 /* Positions of a block's points, to the file's from number n on. */
-static void place_points(const dataset_block *b, const complex_file *file, uint64_t n) {
+static void put_points(const dataset_block *b, const complex_file *file, uint64_t n) {
     if (b->kind == BLOCK_CURVILINEAR || b->kind == BLOCK_UNSTRUCTURED) {
-        for (int64_t at = 0; at < 3 * b->point_count; at++) put_place(file, n++, coordinate_at(b->points, at));
+        for (int64_t at = 0; at < 3 * b->point_count; at++) put_coordinate(file, n++, coordinate_at(b->points, at));
         return;
     }
     int64_t p[3];
     for (p[2] = 0; p[2] < b->dims[2]; p[2]++)
         for (p[1] = 0; p[1] < b->dims[1]; p[1]++)
             for (p[0] = 0; p[0] < b->dims[0]; p[0]++)
-                for (int r = 0; r < 3; r++) put_place(file, n++, place(b, p, r, file->points_f64 != NULL));
+                for (int r = 0; r < 3; r++) put_coordinate(file, n++, position_of(b, p, r, file->points_f64 != NULL));
 }
 
 static int join_points(conversion *c) {
@@ -146,7 +146,7 @@ static int join_points(conversion *c) {
     else
         c->file.points = points;
     for (int n = 0; n < c->data.block_count; n++) {
-        place_points(&c->data.blocks[n], &c->file, first);
+        put_points(&c->data.blocks[n], &c->file, first);
         first += 3 * (uint64_t)c->data.blocks[n].point_count;
     }
     return 0;

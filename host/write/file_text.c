@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Room for `more` bytes and the zero behind them. */
-static char *make_room(file_text *t, size_t more) {
+static char *reserve_memory(file_text *t, size_t more) {
     char *bytes = t->has_failed ? NULL : realloc(t->bytes, t->length + more + 1);
     t->has_failed = bytes == NULL;
     if (bytes) t->bytes = bytes;
@@ -19,7 +19,7 @@ void text_add(file_text *t, const char *format, ...) {
     va_start(arguments, format);
     va_copy(again, arguments);
     int length = vsnprintf(NULL, 0, format, arguments);
-    char *to = length >= 0 ? make_room(t, (size_t)length) : NULL;
+    char *to = length >= 0 ? reserve_memory(t, (size_t)length) : NULL;
     if (to) {
         vsnprintf(to, (size_t)length + 1, format, again);
         t->length += (size_t)length;
@@ -29,7 +29,7 @@ void text_add(file_text *t, const char *format, ...) {
 }
 
 void text_fill(file_text *t, char c, size_t count) {
-    char *to = make_room(t, count);
+    char *to = reserve_memory(t, count);
     if (!to) return;
     memset(to, c, count);
     to[count] = 0;

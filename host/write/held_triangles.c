@@ -20,8 +20,8 @@ int held_complete(held_triangles *held, const tc_mesh_data *next, tc_mesh_data *
     return 1;
 }
 
-static int make_room(held_triangles *held, uint64_t count) {
-    if (count <= held->room) return 0;
+static int reserve_memory(held_triangles *held, uint64_t count) {
+    if (count <= held->capacity) return 0;
     held_release(held);
     held->corners = malloc(count * 9 * sizeof *held->corners);
     held->missing = malloc(count * 3 * sizeof *held->missing);
@@ -29,7 +29,7 @@ static int make_room(held_triangles *held, uint64_t count) {
     if (!held->corners || !held->missing || !held->indices)
         return fail(STATUS_FAILED, "out of memory for triangles between two pieces of a mesh");
     for (uint64_t c = 0; c < 3 * count; c++) held->indices[c] = (uint32_t)c;
-    held->room = count;
+    held->capacity = count;
     return 0;
 }
 
@@ -39,7 +39,7 @@ int held_take(held_triangles *held, uint64_t first_triangle, tc_mesh_data *piece
     kept /= 3;
     held->count = 0;
     const uint64_t count = piece->triangle_count - kept;
-    int status = make_room(held, count);
+    int status = reserve_memory(held, count);
     if (status) return status;
     held->first = first_triangle + kept;
     held->count = count;

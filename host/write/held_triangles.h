@@ -13,7 +13,7 @@ typedef struct held_triangles {
     float *corners;        /* 9 per triangle, as far as they are known */
     uint32_t *missing;     /* 3 per triangle: a vertex of the next piece, or UINT32_MAX */
     uint32_t *indices;     /* 3 per triangle: 0, 1, 2, ... */
-    uint64_t room;
+    uint64_t capacity;
 } held_triangles;
 
 /* Makes a mesh of what is held, with the vertices of the next piece; the mesh is valid until held_take. 0 where nothing

@@ -16,12 +16,12 @@ typedef struct label_order {
 int label_order_make(const shown_mesh *s, label_order *order);
 void label_order_release(label_order *order);
 
-/* The labels of the triangle at this place of the order: the inner side's, the outer side's. */
-static inline const uint32_t *label_order_at(const label_order *order, uint64_t place) {
-    return order->shown->labels + (size_t)2 * order->triangles[place];
+/* The labels of the triangle at this position of the order: the inner side's, the outer side's. */
+static inline const uint32_t *label_order_at(const label_order *order, uint64_t position) {
+    return order->shown->labels + (size_t)2 * order->triangles[position];
 }
 
-/* One past the last triangle, from place `first` on, with the same inner label; is_pair: and the same outer one. */
+/* One past the last triangle, from position `first` on, with the same inner label; is_pair: and the same outer one. */
 uint64_t label_order_end(const label_order *order, uint64_t first, int is_pair);
 
 /* The records of triangles, in that order where there is one. */

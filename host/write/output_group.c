@@ -15,19 +15,19 @@ static void allow_many_files(void) {
     (void)setrlimit(RLIMIT_NOFILE, &files);
 }
 
-static int make_room(output_group *group) {
-    if (group->count < group->room) return 0;
-    const size_t room = 2 * group->room + 1;
-    output *grown = realloc(group->waiting, room * sizeof *grown);
+static int reserve_memory(output_group *group) {
+    if (group->count < group->capacity) return 0;
+    const size_t capacity = 2 * group->capacity + 1;
+    output *grown = realloc(group->waiting, capacity * sizeof *grown);
     if (!grown) return ENOMEM;
     group->waiting = grown;
-    group->room = room;
+    group->capacity = capacity;
     return 0;
 }
 
 int output_wait(output *o, output_group *group) {
     output_finish(o);
-    if (!o->error) o->error = make_room(group);
+    if (!o->error) o->error = reserve_memory(group);
     if (o->error || !o->temporary) return output_close(o);
     if (group->count == 0) allow_many_files();
     o->name = o->path;

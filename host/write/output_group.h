@@ -12,7 +12,7 @@
 
 typedef struct output_group {
     output *waiting; /* from malloc */
-    size_t count, room;
+    size_t count, capacity;
 } output_group;
 
 /* In place of output_close: the output is complete and waits in the group. Returns 0 or a status with its text; the

@@ -70,10 +70,10 @@ static int is_taken(const hdf_file *f, const char *name) {
  * NULL without memory. */
 static char *make_name(const hdf_file *f, const char *name, int is_normals) {
     static const char folder[] = "PointData/";
-    const size_t room = strlen(name) + sizeof folder + (size_t)f->s->array_count + 2;
-    char *path = malloc(room);
+    const size_t capacity = strlen(name) + sizeof folder + (size_t)f->s->array_count + 2;
+    char *path = malloc(capacity);
     if (!path) return NULL;
-    size_t length = (size_t)snprintf(path, room, "%s%s", folder, *name ? name : "_");
+    size_t length = (size_t)snprintf(path, capacity, "%s%s", folder, *name ? name : "_");
     char *own = path + sizeof folder - 1;
     for (char *at = own; *at; at++)
         if (*at == '/') *at = '_';

@@ -6,8 +6,18 @@
  * in its group, for CPUs: extensions.cl holds what it needs beyond OpenCL C. Files named _groups or _alone, and others
  * that say so, belong to one variant, the rest to both. host/lib/opencl/variant.c chooses that of a device.
  *
- * From the build: BITS, the unsigned type as wide as a sample; FLOATING, its width where samples are floating;
- * WORK_ITEMS, of a group; MISSING; METHOD, a name in methods.h; CLOSED, where surfaces are closed.
+ * The build defines (host/lib/opencl/program.c):
+ *
+ *     WORK_ITEMS          of a group; 1: the variant for a work-item alone
+ *     BITS                the unsigned type as wide as a sample
+ *     FLOATING            the width of samples that are floating; else 0
+ *     FP64, WIDE          the device has double; samples need more than float
+ *     REAL, SAMPLE_VALUE  the type in which t is computed, and a sample in it; undefined where the host makes vertices
+ *     DIVISION            how crossing.cl divides
+ *     GRID                where positions come from: grid_kind of host/lib/grid/grid.h
+ *     METHOD              a name in methods.h
+ *     MISSING, CLOSED, NORMALS, WHOLE   samples may be missing; surfaces are closed; normals are made; cells are kept
+ *                         whole
  */
 #ifndef COMMON_CL
 #define COMMON_CL

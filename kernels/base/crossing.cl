@@ -49,7 +49,7 @@ inline_always float divide(float a, float b) {
     ulong kept = quotient >> drop, rest = quotient - (kept << drop), half_way = 1ul << (drop - 1);
     kept += rest > half_way || (rest == half_way && (inexact || (kept & 1)));
     int field = exponent + drop + 150;
-    uint magnitude = (uint)kept; /* at most 24 bits: a quotient below 2^n is below it by a last place at least */
+    uint magnitude = (uint)kept; /* at most 24 bits: no quotient lies so close below 2^n that it is rounded to it */
     magnitude = magnitude >> 23 ? ((uint)field << 23) | (magnitude & 0x7fffff) : magnitude;
     return as_float(sign | magnitude);
 }

@@ -139,7 +139,8 @@ inline_always uint signs_packed(ulong8 x) {
 }
 
 #ifndef MASK_REGISTERS
-/* Element n: of the words of these four vectors, or of three, the one that lane[n] names. */
+/* Element n is word lane[n] of low.lo, low.hi, high.lo and high.hi, eight words each. all_four: false where no lane[n]
+ * names a word of the last one. */
 inline_always uint8 words_chosen(uint16 low, uint16 high, uint8 lane, bool all_four) {
     const int8 by_8 = as_int8(lane << 28), by_16 = as_int8(lane << 27);
     const uint8 a = __builtin_astype(__builtin_ia32_permvarsi256(as_int8(low.lo), as_int8(lane)), uint8);

@@ -56,7 +56,7 @@ inline_always bool scan_look_back(global uint *tiles, uint sum_index, uint *tile
     return *tile == 0;
 }
 
-/* To settle a tile is to look back for its prefix and to post it; what the tile has stored is completed after that. A
+/* To settle a tile: look back for the sums before it, post its prefix, then complete what the tile has stored. A
  * group that posts the sums of all its tiles before it settles any lists them, in the order in which it took them. */
 #define SETTLES_LATER (WORK_ITEMS == 1)
 #define NO_TILE       0xffffffffu
@@ -65,13 +65,13 @@ typedef struct own_tiles {
     uint first, last;
 } own_tiles;
 
-inline_always void own_append(own_tiles *own, uint number, global uint *tiles) {
+inline_always void own_append(own_tiles *own, uint tile_index, global uint *tiles) {
     if (own->first == NO_TILE)
-        own->first = number;
+        own->first = tile_index;
     else
-        tiles[TILE_WORDS * own->last + TILE_NEXT] = number;
-    tiles[TILE_WORDS * number + TILE_NEXT] = NO_TILE;
-    own->last = number;
+        tiles[TILE_WORDS * own->last + TILE_NEXT] = tile_index;
+    tiles[TILE_WORDS * tile_index + TILE_NEXT] = NO_TILE;
+    own->last = tile_index;
 }
 
 #endif

@@ -29,8 +29,8 @@ enum { BRICK_ROWS = 8, BRICK_PLANES = 4, BRICK_WORDS = 32 };
  * start of the buffer stand for them. */
 enum { SIGN_OUTSIDE, SIGN_INSIDE, SIGN_MIXED, UNIFORM_BRICKS = 2 };
 
-/* What kernel 1 finds out about a brick. While samples are snapped, `rows` tells whether it is in the list of those
- * that have violated samples. */
+/* What kernel 1 finds out about a brick. While samples are snapped, `rows` counts how often the brick was entered in
+ * the list of bricks with violated samples: where it is not 0, the brick is there. */
 typedef struct brick_state {
     slab_u32 vertices, triangles; /* before it in the slab */
     slab_u32 rows;                /* bit n: row n of the brick emits something */
@@ -45,7 +45,8 @@ typedef struct brick_range {
 
 /* The table of cases for kernel 2, of 2 parities x CASE_COUNT patterns of a cube: the number of triangles, then three
  * vertices for each. A pattern of two signs has a bit per corner; where the surface can go through samples, a digit to
- * the base 3. Then 256 shorts follow the table: entry n is the number whose digits to the base 3 are the bits of n. */
+ * the base 3. Then 256 shorts follow
+ * the table, which turn bits into digits: entry n is the sum of 3^m over the bits m of n. */
 #define CASE_COUNT(vertex_types) ((vertex_types) > 6 ? 6561 : 256)
 enum { CUBE_CASE_BYTES = 32 };
 
@@ -58,13 +59,18 @@ enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FAC
  * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of vertex and, where these are not a
  * power of two, unused ones up to the next. The table of cases names a vertex by its slot (case_slots.h). */
 #define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
-enum { NUMBER_COLUMNS = 65, NUMBER_ROWS = 9, NUMBER_PLANES = 5, NUMBER_LANES = 16 };
+enum {
+    NUMBER_COLUMNS = 65,
+    NUMBER_ROWS = 9,
+    NUMBER_PLANES = 5,
+    NUMBER_PADDING = 16 /* numbers behind the table that vectors may read and write */
+};
 
 /* The index of a sample in that table, in samples. */
 #define NUMBER_INDEX(x, y, z) (((z)*NUMBER_ROWS + (y)) * NUMBER_COLUMNS + (x))
 
-/* Local memory that a group takes for every 32 of its work-items: at most kernel 2's table of a brick's rows
- * (emit_rows.cl). */
+/* Local memory that a group takes for each brick that it works on, that is for every 32 work-items: at most kernel 2's
+ * table of a brick's rows (emit_rows.cl). */
 enum { LOCAL_BYTES_PER_BRICK = 3072 };
 
 /* Where work-items share bricks, the table of cases names the sample that owns an edge, and the edge's type. */
@@ -96,10 +102,20 @@ enum {
     STATE_WORDS = STATE_SNAP_TICKET + SNAP_TICKETS
 };
 
-/* Words of the state buffer per tile: its two sums as scan.cl keeps them, how many of its bricks emit something, and
- * the next tile of the same group. Others than kernel 1 sum up something else: active items and triangles
- * (complex_count.cl), vertices at points and tetrahedra (complex_interval_count.cl). */
-enum { TILE_VERTICES, TILE_TRIANGLES, TILE_BRICKS, TILE_NEXT, TILE_WORDS };
+/* Words of the state buffer per tile: two sums as scan.cl keeps them, one more word, and the next tile of the same
+ * group. Kernel 1 sums up vertices and triangles, and keeps how many bricks emit something. Others sum up something
+ * else: active items and triangles (complex_count.cl), vertices at points and tetrahedra (complex_interval_count.cl).
+ */
+enum {
+    TILE_SUM_X,
+    TILE_SUM_Y,
+    TILE_EXTRA,
+    TILE_NEXT,
+    TILE_WORDS,
+    TILE_VERTICES = TILE_SUM_X,
+    TILE_TRIANGLES = TILE_SUM_Y,
+    TILE_BRICKS = TILE_EXTRA
+};
 
 /* A sum has the lower bits of its word: the host bounds a slab so that none passes them. */
 #define SCAN_VALUE 0x3fffffffu

@@ -22,9 +22,9 @@ inline_always uint ticket_take(global uint *ticket, local uint *shared) {
     group_barrier();
     if (get_local_id(0) == 0) shared[0] = atomic_inc(ticket);
     group_barrier();
-    uint number = shared[0];
+    uint tile_index = shared[0];
     group_barrier();
-    return number;
+    return tile_index;
 }
 
 /* Returns *running plus the values of the work-items before this one; adds the values of all to *running. */
@@ -50,21 +50,21 @@ inline_always uint2 group_prefix(uint2 value, uint2 *running, local uint2 *sums)
     return before;
 }
 
-/* The sum over all tiles before tile `number`; valid once the last of them has posted its prefix. */
-inline_always uint tile_before(global const uint *tiles, uint number, uint sum_index) {
-    return number ? tiles[TILE_WORDS * (number - 1) + sum_index] & SCAN_VALUE : 0;
+/* The sum over all tiles before a tile; valid once the last of them has posted its prefix. */
+inline_always uint tile_before(global const uint *tiles, uint tile_index, uint sum_index) {
+    return tile_index ? tiles[TILE_WORDS * (tile_index - 1) + sum_index] & SCAN_VALUE : 0;
 }
 
-inline_always void tile_post(tile_scan scan, uint number, uint2 sums) {
+inline_always void tile_post(tile_scan scan, uint tile_index, uint2 sums) {
     if (get_local_id(0) != 0) return;
-    scan_post_sum(scan.tiles, number, TILE_VERTICES, sums.x);
-    scan_post_sum(scan.tiles, number, TILE_TRIANGLES, sums.y);
+    scan_post_sum(scan.tiles, tile_index, TILE_SUM_X, sums.x);
+    scan_post_sum(scan.tiles, tile_index, TILE_SUM_Y, sums.y);
 }
 
 /* Looks back from a tile for the sum over all tiles before it. Where that is not complete, shared[1] - 1 is the tile
  * whose sum is not posted. */
-inline_always bool tile_look_back(tile_scan scan, uint number, uint sum_index, uint *prefix) {
-    uint back = number;
+inline_always bool tile_look_back(tile_scan scan, uint tile_index, uint sum_index, uint *prefix) {
+    uint back = tile_index;
     bool done = scan_look_back(scan.tiles, sum_index, &back, prefix, scan.spin_limit);
     scan.shared[1] = back;
     return done;
@@ -73,19 +73,20 @@ inline_always bool tile_look_back(tile_scan scan, uint number, uint sum_index, u
 /* Looks back from a tile whose sums are posted, and posts its prefix. Returns true when that is done; else tile
  * *unposted has to be recounted first. With spin_limit 1, which is for tests, the tile before is recounted every time.
  */
-inline_always bool tile_settle(tile_scan scan, uint number, bool look, uint *unposted) {
+inline_always bool tile_settle(tile_scan scan, uint tile_index, bool look, uint *unposted) {
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
         uint vertices = 0, triangles = 0;
-        scan.shared[1] = number;
-        done = (look || scan.spin_limit > 1 || number == 0) && tile_look_back(scan, number, TILE_VERTICES, &vertices) &&
-               tile_look_back(scan, number, TILE_TRIANGLES, &triangles);
+        scan.shared[1] = tile_index;
+        done = (look || scan.spin_limit > 1 || tile_index == 0) &&
+               tile_look_back(scan, tile_index, TILE_SUM_X, &vertices) &&
+               tile_look_back(scan, tile_index, TILE_SUM_Y, &triangles);
         if (done) {
-            vertices += scan_own_sum(scan.tiles, number, TILE_VERTICES);
-            triangles += scan_own_sum(scan.tiles, number, TILE_TRIANGLES);
-            scan_post_prefix(scan.tiles, number, TILE_VERTICES, vertices);
-            scan_post_prefix(scan.tiles, number, TILE_TRIANGLES, triangles);
+            vertices += scan_own_sum(scan.tiles, tile_index, TILE_SUM_X);
+            triangles += scan_own_sum(scan.tiles, tile_index, TILE_SUM_Y);
+            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_X, vertices);
+            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_Y, triangles);
         }
         scan.shared[0] = done;
     }

@@ -33,6 +33,17 @@ inline_always uint brick_index(const slab *s, uint y, uint z, uint w) {
     return ((z - s->results.word_z) / BRICK_PLANES * s->bricks_y + y / BRICK_ROWS) * s->words_x + w;
 }
 
+typedef struct grid_index {
+    uint x, y, z;
+} grid_index;
+
+/* The first sample of a brick. */
+inline_always grid_index brick_origin(const slab *s, uint brick) {
+    grid_index origin = {brick % s->words_x * 64, brick / s->words_x % s->bricks_y * BRICK_ROWS,
+                         s->results.word_z + brick / s->words_x / s->bricks_y * BRICK_PLANES};
+    return origin;
+}
+
 /* The index of a row in its brick. */
 inline_always uint row_in_brick(const slab *s, uint y, uint z) {
     return (z - s->results.word_z) % BRICK_PLANES * BRICK_ROWS + y % BRICK_ROWS;
@@ -42,10 +53,10 @@ inline_always uint word_index(const slab *s, uint y, uint z, uint w) {
     return BRICK_WORDS * brick_index(s, y, z, w) + row_in_brick(s, y, z);
 }
 
-/* The 32 words of brick `number`. `words` points behind the two bricks of constant words, which have the numbers -2
- * (outside) and -1 (inside). Those of an inside brick have bits set outside the grid too. */
-inline_always global const ulong *brick_words(uint number, uint sign, global const ulong *words) {
-    return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)number : (long)sign - UNIFORM_BRICKS);
+/* The 32 words of a brick. `words` points behind the two bricks of constant words, which have the indices -2 (outside)
+ * and -1 (inside). Those of an inside brick have bits set outside the grid too. */
+inline_always global const ulong *brick_words(uint brick, uint sign, global const ulong *words) {
+    return words + BRICK_WORDS * (sign == SIGN_MIXED ? (long)brick : (long)sign - UNIFORM_BRICKS);
 }
 
 /* Words of the samples that are vertices themselves (method snap), for words of a brick. */

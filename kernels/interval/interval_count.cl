@@ -60,17 +60,17 @@ inline_always uint row_tetrahedra_count(const slab *s, const interval_rows *r, u
     return sum;
 }
 
-/* Counts brick `number`; of bricks behind those that are emitted only samples. rows: for each row, tetrahedra before it
+/* Counts a brick; of bricks behind those that are emitted only samples. rows: for each row, tetrahedra before it
  * in the brick in the upper half, and samples in the lower half. */
 inline_always interval_brick volume_brick_count(const slab *s, const bound *low, const bound *high,
-                                                global const ulong *cells, uint number, bool is_own,
+                                                global const ulong *cells, uint brick, bool is_own,
                                                 global const uint *counts, global uint *rows) {
-    const corner c = brick_corner(s, number);
-    const bool within = brick_is(s, low, number, SIGN_INSIDE) && brick_is(s, high, number, SIGN_OUTSIDE);
+    const grid_index origin = brick_origin(s, brick);
+    const bool within = brick_is(s, low, brick, SIGN_INSIDE) && brick_is(s, high, brick, SIGN_OUTSIDE);
     interval_brick sum = {0, 0};
-    if (brick_is(s, low, number, SIGN_OUTSIDE) || brick_is(s, high, number, SIGN_INSIDE)) return sum;
+    if (brick_is(s, low, brick, SIGN_OUTSIDE) || brick_is(s, high, brick, SIGN_INSIDE)) return sum;
     for (uint n = 0; n < BRICK_WORDS; n++) {
-        const uint y = c.y + n % BRICK_ROWS, z = c.z + n / BRICK_ROWS, w = c.x / 64;
+        const uint y = origin.y + n % BRICK_ROWS, z = origin.z + n / BRICK_ROWS, w = origin.x / 64;
         rows[n] = sum.tetrahedra << 16 | sum.samples;
         if (y >= s->ny || z >= s->z1) continue;
         sum.samples += (uint)popcount(samples_within(s, low, high, cells, y, z, w));

@@ -20,8 +20,8 @@ typedef struct interval_mesh {
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
 /* Stores the vertex on an edge of the brick whose first sample is `first`; is_sample: at the edge's first end. */
-inline_always void vertex_store(const slab *s, corner first, uint edge, bool is_sample, REAL isovalue, grid_arrays in,
-                                global float *out) {
+inline_always void vertex_store(const slab *s, grid_index first, uint edge, bool is_sample, REAL isovalue,
+                                grid_arrays in, global float *out) {
     const ulong from =
         row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));
     const long step = edge_step(s, edge);
@@ -36,15 +36,15 @@ inline_always void vertex_store(const slab *s, corner first, uint edge, bool is_
 }
 
 /* Vertices at a row's samples within. */
-inline_always void samples_store(const slab *s, corner first, uint y, uint z, ulong within, grid_arrays in,
+inline_always void samples_store(const slab *s, grid_index first, uint y, uint z, ulong within, grid_arrays in,
                                  global float *out) {
-    const uint row = EDGE_PLACE + ((y - first.y) << 7 | (z - first.z) << 11);
+    const uint row = EDGE_AT_SAMPLE + ((y - first.y) << 7 | (z - first.z) << 11);
     for (; within; within &= within - 1, out += 3) vertex_store(s, first, row + lowest_bit(within), true, 0, in, out);
 }
 
 /* Vertices of a bound that a row's samples own. */
-inline_always void crossings_store(const slab *s, corner first, uint y, uint z, const crossings *edges, REAL isovalue,
-                                   grid_arrays in, global float *out) {
+inline_always void crossings_store(const slab *s, grid_index first, uint y, uint z, const crossings *edges,
+                                   REAL isovalue, grid_arrays in, global float *out) {
     const uint row = (y - first.y) << 7 | (z - first.z) << 11;
     const ulong even = even_cubes(s, y, z);
 #pragma unroll
@@ -69,7 +69,7 @@ inline_always uint corners_at(const sample_rows rows[4], uint bit) {
     return pattern;
 }
 
-inline_always global uint *cube_store(const places_row *at, const row_places *p, const interval_rows *r, uint bit,
+inline_always global uint *cube_store(const slot_source *at, const row_slots *p, const interval_rows *r, uint bit,
                                       uint odd, global const uchar *cases, global uint *out) {
     const uint low = corners_at(r->low, bit), high = corners_at(r->high, bit);
 #pragma unroll 1
@@ -93,10 +93,10 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
     const ulong present = cubes_present(s, cells, y, z, w), even = even_cubes(s, y, z);
     const ulong within = cubes_within(r, present);
     ulong left = cubes_reached(r, present);
-    row_places p;
+    row_slots p;
     if (!left) return;
-    const places_row at = {s, job, low, high, sums, r, cells, y, z, w};
-    places_begin(&at, left, left & ~within, &p);
+    const slot_source at = {s, job, low, high, sums, r, cells, y, z, w};
+    slots_begin(&at, left, left & ~within, &p);
     while (left) {
         const uint bit = lowest_bit(left), odd = (uint)(~even >> bit & 1);
         const uint length = min(lowest_bit(~(within >> bit)), 63 - bit);
@@ -114,18 +114,18 @@ inline_always void row_tetrahedra(const slab *s, const interval_job *job, const 
 
 /* Vertices of a bound that a row owns, into the buffer of the bound's block. */
 inline_always void bound_store(const slab *s, const interval_job *job, const bound *b, const sample_rows rows[4],
-                               uint block, corner first, uint y, uint z, global const ulong *cells, REAL isovalue,
+                               uint block, grid_index first, uint y, uint z, global const ulong *cells, REAL isovalue,
                                grid_arrays in, global float *positions) {
     const row_numbers o = bound_numbers(s, b, job->first[block], y, z, first.x / 64);
     const crossings edges = row_crossings(s, rows, 0, cells, y, z, first.x / 64);
     crossings_store(s, first, y, z, &edges, isovalue, in, positions + 3ul * (number_of(o, 0) - job->window[block]));
 }
 
-/* Emits row n of brick `number`. */
+/* Emits row n of a brick. */
 inline_always void interval_row(const slab *s, const interval_job *job, const bound *low, const bound *high,
-                                interval_sums sums, uint number, uint n, grid_arrays in, global const ulong *cells,
+                                interval_sums sums, uint brick, uint n, grid_arrays in, global const ulong *cells,
                                 global const uchar *cases, const interval_mesh *mesh) {
-    const corner first = brick_corner(s, number);
+    const grid_index first = brick_origin(s, brick);
     const uint y = first.y + n % BRICK_ROWS, z = first.z + n / BRICK_ROWS, w = first.x / 64;
     if (y >= s->ny || z >= s->z1) return;
     const interval_rows r = rows_load(s, low, high, y, z, w);
@@ -139,13 +139,13 @@ inline_always void interval_row(const slab *s, const interval_job *job, const bo
 #else
     const REAL high_isovalue = job->high_isovalue32;
 #endif
-    if (low->exists && low->bricks[number].rows >> n & 1)
+    if (low->exists && low->bricks[brick].rows >> n & 1)
         bound_store(s, job, low, r.low, INTERVAL_LOW_BOUND, first, y, z, cells, ISOVALUE(&s->test), in,
                     mesh->positions[INTERVAL_LOW_BOUND]);
-    if (high->exists && high->bricks[number].rows >> n & 1)
+    if (high->exists && high->bricks[brick].rows >> n & 1)
         bound_store(s, job, high, r.high, INTERVAL_HIGH_BOUND, first, y, z, cells, high_isovalue, in,
                     mesh->positions[INTERVAL_HIGH_BOUND]);
-    const uint before = sums.bricks[number].tetrahedra + (sums.rows[BRICK_WORDS * number + n] >> 16);
+    const uint before = sums.bricks[brick].tetrahedra + (sums.rows[BRICK_WORDS * brick + n] >> 16);
     row_tetrahedra(s, job, low, high, sums, &r, cells, y, z, w, cases,
                    mesh->tetrahedra + 4ul * (before - job->tetrahedron_window));
 }
@@ -153,9 +153,9 @@ inline_always void interval_row(const slab *s, const interval_job *job, const bo
 /* Bricks that a group takes at once by ticket. */
 #define INTERVAL_RUN 16u
 
-/* Whether brick `number` has anything. Rows of those that have not were not counted. */
-inline_always bool brick_has_any(const slab *s, const bound *low, const bound *high, uint number) {
-    return !brick_is(s, low, number, SIGN_OUTSIDE) && !brick_is(s, high, number, SIGN_INSIDE);
+/* Whether a brick has anything. Rows of those that have not were not counted. */
+inline_always bool brick_has_any(const slab *s, const bound *low, const bound *high, uint brick) {
+    return !brick_is(s, low, brick, SIGN_OUTSIDE) && !brick_is(s, high, brick, SIGN_INSIDE);
 }
 
 kernel void interval_emit(slab s, interval_job job, global const BITS *samples, global const ulong *cells,
@@ -181,9 +181,9 @@ kernel void interval_emit(slab s, interval_job job, global const BITS *samples, 
         run = shared[0];
         const uint end = min(run + INTERVAL_RUN, job.brick_last);
         for (uint item = (uint)get_local_id(0); item < INTERVAL_RUN * BRICK_WORDS; item += WORK_ITEMS) {
-            const uint number = run + item / BRICK_WORDS;
-            if (number < end && brick_has_any(&s, &low, &high, number))
-                interval_row(&s, &job, &low, &high, sums, number, item % BRICK_WORDS, in, cells, cases, &mesh);
+            const uint brick = run + item / BRICK_WORDS;
+            if (brick < end && brick_has_any(&s, &low, &high, brick))
+                interval_row(&s, &job, &low, &high, sums, brick, item % BRICK_WORDS, in, cells, cases, &mesh);
         }
     }
 }

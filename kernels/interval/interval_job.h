@@ -32,9 +32,9 @@ typedef struct interval_job {
 
 /* A vertex of a tetrahedron that a cube has, as a byte: block, the row of samples that owns it (y + 2 z), its type of
  * edge, and whether the owner is at x + 1. Samples have type 0. */
-#define INTERVAL_PLACE(block, row, type)        (((block)*4 + (row)) * 8 + (type))
-#define INTERVAL_VERTEX(block, row, type, at_x) (2 * INTERVAL_PLACE(block, row, type) + (at_x))
-enum { INTERVAL_PLACES = INTERVAL_BLOCKS * 4 * 8 };
+#define INTERVAL_SLOT(block, row, type)         (((block)*4 + (row)) * 8 + (type))
+#define INTERVAL_VERTEX(block, row, type, at_x) (2 * INTERVAL_SLOT(block, row, type) + (at_x))
+enum { INTERVAL_SLOTS = INTERVAL_BLOCKS * 4 * 8 };
 
 /* The table of cases. First, for each of 2 parities x 5 tetrahedra, 256 bytes: by pattern of the cube's corners, the
  * sum of 3^m over the corners m of the tetrahedron that are in the pattern. A case is the byte of the pattern "not

@@ -1,10 +1,11 @@
 /*
  * interval_numbers.cl - numbers of the vertices of an interval volume
  *
- * A vertex is owned by a sample, at a place (INTERVAL_PLACE): itself, or on an edge with a bound. Its number is that of
- * the first vertex there in the row, and the vertices of that place at lower x: a population count of a word. For a row
- * of cubes a work-item alone makes a table of words and first numbers. Work-items of groups make the word when a
- * tetrahedron names the vertex, as a table with a variable index would lie in slow memory.
+ * A vertex is owned by a sample: it lies at the sample, or on an edge with a bound. A slot (INTERVAL_SLOT) is
+ * a row of samples and a type of edge of a bound, or the samples themselves. The number of a vertex is that of its
+ * slot's first vertex in the row, plus the slot's vertices at lower x: a population count of a word. For a row of cubes
+ * a work-item alone makes a table of words and first numbers. Work-items of groups make the word when a tetrahedron
+ * names the vertex, as a table with a variable index would lie in slow memory.
  */
 #ifndef INTERVAL_NUMBERS_CL
 #define INTERVAL_NUMBERS_CL
@@ -18,7 +19,7 @@ typedef struct interval_sums {
 } interval_sums;
 
 /* A row of cubes, and what its numbers are made of. */
-typedef struct places_row {
+typedef struct slot_source {
     const slab *s;
     const interval_job *job;
     const bound *low, *high;
@@ -26,19 +27,19 @@ typedef struct places_row {
     const interval_rows *rows;
     global const ulong *cells;
     uint y, z, w;
-} places_row;
+} slot_source;
 
 /* The number of the first sample within of a row. */
 inline_always uint sample_first(const slab *s, const interval_job *job, interval_sums sums, uint y, uint z, uint w) {
-    const uint number = brick_index(s, y, z, w);
-    return job->first[INTERVAL_SAMPLES] + sums.bricks[number].samples +
-           (sums.rows[BRICK_WORDS * number + row_in_brick(s, y, z)] & 0xffff);
+    const uint brick = brick_index(s, y, z, w);
+    return job->first[INTERVAL_SAMPLES] + sums.bricks[brick].samples +
+           (sums.rows[BRICK_WORDS * brick + row_in_brick(s, y, z)] & 0xffff);
 }
 
 /* Where the numbers of the vertices of a bound begin that a row owns. */
 inline_always row_numbers bound_numbers(const slab *s, const bound *b, uint first, uint y, uint z, uint w) {
-    const uint number = brick_index(s, y, z, w);
-    row_numbers o = {first + b->bricks[number].vertices, b->offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
+    const uint brick = brick_index(s, y, z, w);
+    row_numbers o = {first + b->bricks[brick].vertices, b->offsets[BRICK_WORDS * brick + row_in_brick(s, y, z)]};
     return o;
 }
 
@@ -56,6 +57,7 @@ inline_always crossings row_crossings(const slab *s, const sample_rows rows[4], 
     return edges;
 }
 
+/* This program has one text, in which the build decides on WORK_ITEMS; in others embed.cmake has done so. */
 #if WORK_ITEMS >= 32
 #if MISSING
 
@@ -90,22 +92,22 @@ inline_always ulong edges_word(const slab *s, const bound *b, global const ulong
     return crossed;
 }
 
-/* The word of a place: samples that own a vertex there. */
-inline_always ulong place_word(const places_row *r, uint place) {
-    const uint block = place >> 5, y = r->y + (place >> 3 & 1), z = r->z + (place >> 4 & 1);
+/* The word of a slot: samples that own a vertex there. */
+inline_always ulong slot_word(const slot_source *r, uint slot) {
+    const uint block = slot >> 5, y = r->y + (slot >> 3 & 1), z = r->z + (slot >> 4 & 1);
     if (block == INTERVAL_SAMPLES) return samples_within(r->s, r->low, r->high, r->cells, y, z, r->w);
-    return edges_word(r->s, block == INTERVAL_LOW_BOUND ? r->low : r->high, r->cells, y, z, r->w, place & 7);
+    return edges_word(r->s, block == INTERVAL_LOW_BOUND ? r->low : r->high, r->cells, y, z, r->w, slot & 7);
 }
 
 #endif
 
-/* The number of the first vertex of a place, in word w of its row. */
-inline_always uint place_first(const places_row *r, uint place, uint w) {
-    const uint block = place >> 5, y = r->y + (place >> 3 & 1), z = r->z + (place >> 4 & 1);
+/* The number of the first vertex of a slot, in word w of its row. */
+inline_always uint slot_first(const slot_source *r, uint slot, uint w) {
+    const uint block = slot >> 5, y = r->y + (slot >> 3 & 1), z = r->z + (slot >> 4 & 1);
     if (block == INTERVAL_SAMPLES) return sample_first(r->s, r->job, r->sums, y, z, w);
     const bound *b = block == INTERVAL_LOW_BOUND ? r->low : r->high;
     const uint first = r->job->first[block == INTERVAL_LOW_BOUND ? INTERVAL_LOW_BOUND : INTERVAL_HIGH_BOUND];
-    return number_of(bound_numbers(r->s, b, first, y, z, w), place & 7);
+    return number_of(bound_numbers(r->s, b, first, y, z, w), slot & 7);
 }
 
 /* An entry of the table of cases: parity of a cube, tetrahedron, case. */
@@ -121,60 +123,60 @@ inline_always uint run_vertex(global const uchar *cases, uint odd, uint m) {
 
 #if WORK_ITEMS < 32
 
-/* For each place its word, the number of the first vertex, and of the first one in the next word, where the last cube
+/* For each slot its word, the number of the first vertex, and of the first one in the next word, where the last cube
  * of the row needs that. */
-typedef struct row_places {
-    ulong word[INTERVAL_PLACES];
-    uint first[INTERVAL_PLACES], next[INTERVAL_PLACES];
+typedef struct row_slots {
+    ulong word[INTERVAL_SLOTS];
+    uint first[INTERVAL_SLOTS], next[INTERVAL_SLOTS];
     bool has_next;
-} row_places;
+} row_slots;
 
 /* Types of edges that cubes have of row n of their rows of samples: a bit each. */
 #define ROW_TYPES(n) ((n) == 0 ? 0x3fu : (n) == 1 ? 0x15u : (n) == 2 ? 0x0bu : 0x01u)
 
-inline_always void place_fill(const places_row *r, uint place, ulong word, row_places *p) {
-    p->word[place] = word;
-    p->first[place] = place_first(r, place, r->w);
-    if (p->has_next) p->next[place] = place_first(r, place, r->w + 1);
+inline_always void slot_fill(const slot_source *r, uint slot, ulong word, row_slots *p) {
+    p->word[slot] = word;
+    p->first[slot] = slot_first(r, slot, r->w);
+    if (p->has_next) p->next[slot] = slot_first(r, slot, r->w + 1);
 }
 
-inline_always void places_of_bound(const places_row *r, const bound *b, const sample_rows rows[4], uint block,
-                                   row_places *p) {
+inline_always void slots_of_bound(const slot_source *r, const bound *b, const sample_rows rows[4], uint block,
+                                  row_slots *p) {
     if (!b->exists) return;
 #pragma unroll
     for (uint n = 0; n < 4; n++) {
         const crossings edges = row_crossings(r->s, rows, n, r->cells, r->y, r->z, r->w);
 #pragma unroll
         for (uint type = 0; type < 6; type++)
-            if (ROW_TYPES(n) >> type & 1) place_fill(r, INTERVAL_PLACE(block, n, type), edges.type[type], p);
+            if (ROW_TYPES(n) >> type & 1) slot_fill(r, INTERVAL_SLOT(block, n, type), edges.type[type], p);
     }
 }
 
 /* reached: cubes that have any tetrahedra; partial: those of them that are not wholly within, so that their vertices
  * are on edges too. */
-inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) {
+inline_always void slots_begin(const slot_source *r, ulong reached, ulong partial, row_slots *p) {
     p->has_next = reached >> 63;
 #pragma unroll
     for (uint n = 0; n < 4; n++)
-        place_fill(r, INTERVAL_PLACE(INTERVAL_SAMPLES, n, 0),
-                   samples_within(r->s, r->low, r->high, r->cells, r->y + (n & 1), r->z + (n >> 1), r->w), p);
+        slot_fill(r, INTERVAL_SLOT(INTERVAL_SAMPLES, n, 0),
+                  samples_within(r->s, r->low, r->high, r->cells, r->y + (n & 1), r->z + (n >> 1), r->w), p);
     if (!partial) return;
-    places_of_bound(r, r->low, r->rows->low, INTERVAL_LOW_BOUND, p);
-    places_of_bound(r, r->high, r->rows->high, INTERVAL_HIGH_BOUND, p);
+    slots_of_bound(r, r->low, r->rows->low, INTERVAL_LOW_BOUND, p);
+    slots_of_bound(r, r->high, r->rows->high, INTERVAL_HIGH_BOUND, p);
 }
 
 /* The number of a vertex (INTERVAL_VERTEX) of the cube at a bit of the row. */
-inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
-    const uint place = vertex >> 1, x = bit + (vertex & 1);
-    return x == 64 ? p->next[place] : p->first[place] + (uint)popcount(p->word[place] & ((1ul << x) - 1));
+inline_always uint slot_number(const slot_source *r, const row_slots *p, uint vertex, uint bit) {
+    const uint slot = vertex >> 1, x = bit + (vertex & 1);
+    return x == 64 ? p->next[slot] : p->first[slot] + (uint)popcount(p->word[slot] & ((1ul << x) - 1));
 }
 
 /* The tetrahedra of an entry, for the cube at a bit. */
-inline_always global uint *tetrahedra_store(const places_row *r, const row_places *p, global const uchar *entry,
+inline_always global uint *tetrahedra_store(const slot_source *r, const row_slots *p, global const uchar *entry,
                                             uint bit, global uint *out) {
     uint numbers[INTERVAL_VERTICES_MOST];
     const uint count = entry[0], vertices = entry[1];
-    for (uint n = 0; n < vertices; n++) numbers[n] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
+    for (uint n = 0; n < vertices; n++) numbers[n] = slot_number(r, p, entry[INTERVAL_ENTRY_VERTICES + n], bit);
     for (uint n = 0; n < count; n++) {
         const uchar4 at = vload4(n, entry + INTERVAL_ENTRY_CORNERS);
         vstore4((uint4)(numbers[at.x], numbers[at.y], numbers[at.z], numbers[at.w]), n, out);
@@ -184,11 +186,11 @@ inline_always global uint *tetrahedra_store(const places_row *r, const row_place
 
 /* Cubes that lie wholly within, `length` of them from a bit on; none is cube 63, some of whose vertices are in the next
  * word. Numbers rise by one from cube to cube. */
-inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,
+inline_always global uint *run_store(const slot_source *r, const row_slots *p, uint bit, uint length, uint odd,
                                      global const uchar *cases, global uint *out) {
     uint start[40];
     uint8 pair[5];
-    for (uint m = 0; m < 40; m++) start[m] = place_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
+    for (uint m = 0; m < 40; m++) start[m] = slot_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
 #pragma unroll
     for (uint n = 0; n < 5; n++) pair[n] = vload8(n, start);
     for (uint n = 0; n + 2 <= length; n += 2, out += 40) {
@@ -201,31 +203,31 @@ inline_always global uint *run_store(const places_row *r, const row_places *p, u
 
 #else
 
-typedef struct row_places {
+typedef struct row_slots {
     uint none;
-} row_places;
+} row_slots;
 
-inline_always void places_begin(const places_row *r, ulong reached, ulong partial, row_places *p) { p->none = 0; }
+inline_always void slots_begin(const slot_source *r, ulong reached, ulong partial, row_slots *p) { p->none = 0; }
 
-inline_always uint place_number(const places_row *r, const row_places *p, uint vertex, uint bit) {
-    const uint place = vertex >> 1, x = bit + (vertex & 1);
-    if (x == 64) return place_first(r, place, r->w + 1);
-    return place_first(r, place, r->w) + (uint)popcount(place_word(r, place) & ((1ul << x) - 1));
+inline_always uint slot_number(const slot_source *r, const row_slots *p, uint vertex, uint bit) {
+    const uint slot = vertex >> 1, x = bit + (vertex & 1);
+    if (x == 64) return slot_first(r, slot, r->w + 1);
+    return slot_first(r, slot, r->w) + (uint)popcount(slot_word(r, slot) & ((1ul << x) - 1));
 }
 
-inline_always global uint *tetrahedra_store(const places_row *r, const row_places *p, global const uchar *entry,
+inline_always global uint *tetrahedra_store(const slot_source *r, const row_slots *p, global const uchar *entry,
                                             uint bit, global uint *out) {
     const uint corners = 4 * (uint)entry[0];
     for (uint m = 0; m < corners; m++)
-        out[m] = place_number(r, p, entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m]], bit);
+        out[m] = slot_number(r, p, entry[INTERVAL_ENTRY_VERTICES + entry[INTERVAL_ENTRY_CORNERS + m]], bit);
     return out + corners;
 }
 
-inline_always global uint *run_store(const places_row *r, const row_places *p, uint bit, uint length, uint odd,
+inline_always global uint *run_store(const slot_source *r, const row_slots *p, uint bit, uint length, uint odd,
                                      global const uchar *cases, global uint *out) {
 #pragma unroll 1
     for (uint m = 0; m < 40; m++) {
-        const uint start = place_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
+        const uint start = slot_number(r, p, run_vertex(cases, odd, m), bit + (m >= 20));
         for (uint n = 0; n + (m >= 20) < length; n += 2) out[20 * n + m] = start + n;
     }
     return out + 20 * length;

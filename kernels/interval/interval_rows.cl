@@ -22,19 +22,19 @@ inline_always bound bound_of(global const ulong *words, global const ulong *offs
     return b;
 }
 
-/* The side of a bound that brick `number` is on. */
-inline_always uint bound_sign(const bound *b, uint number) {
+/* The side of a bound that a brick is on. */
+inline_always uint bound_sign(const bound *b, uint brick) {
     if (!b->exists) return b->fixed ? SIGN_INSIDE : SIGN_OUTSIDE;
-    return b->bricks[number].sign;
+    return b->bricks[brick].sign;
 }
 
 /* Whether the brick's cubes have all their corners on one side of a bound. */
-inline_always bool brick_is(const slab *s, const bound *b, uint number, uint sign) {
-    const uint x = number % s->words_x, y = number / s->words_x % s->bricks_y;
+inline_always bool brick_is(const slab *s, const bound *b, uint brick, uint sign) {
+    const uint x = brick % s->words_x, y = brick / s->words_x % s->bricks_y;
     bool same = true;
     for (uint n = 0; n < 8; n++) {
         const bool exists = x + (n & 1) < s->words_x && y + (n >> 1 & 1) < s->bricks_y;
-        const uint beside = number + (n & 1) + s->words_x * ((n >> 1 & 1) + s->bricks_y * (n >> 2));
+        const uint beside = brick + (n & 1) + s->words_x * ((n >> 1 & 1) + s->bricks_y * (n >> 2));
         if (exists && beside < s->words_x * s->bricks_y * ((s->z1 - s->z0 + BRICK_PLANES - 1) / BRICK_PLANES))
             same = same && bound_sign(b, beside) == sign;
     }
@@ -44,8 +44,8 @@ inline_always bool brick_is(const slab *s, const bound *b, uint number, uint sig
 /* Samples of a row that are not below the bound; bits past the row's end may be set. */
 inline_always ulong bound_word(const slab *s, const bound *b, uint y, uint z, uint w) {
     if (!b->exists) return b->fixed;
-    const uint number = brick_index(s, y, z, w);
-    return brick_words(number, b->bricks[number].sign, b->words)[row_in_brick(s, y, z)];
+    const uint brick = brick_index(s, y, z, w);
+    return brick_words(brick, b->bricks[brick].sign, b->words)[row_in_brick(s, y, z)];
 }
 
 /* A row of samples, and the same shifted to x + 1; 0 outside the grid and behind the window. */

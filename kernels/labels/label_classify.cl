@@ -42,7 +42,7 @@ inline_always void label_row_mark(global uint *rows, uint row) {
 /* Counts a row: vertices and triangles. store: its words and offsets are kept. */
 inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, global const BITS *samples,
                                     label_arrays out, bool store, uint *cells) {
-    const label_place p = label_place_of(s, brick, row);
+    const row_origin p = row_origin_of(s, brick, row);
     ulong e[LABEL_EDGES], t[LABEL_ROW_TYPES], active = 0;
     uint2 sums = 0;
     if (p.y >= s->ny || p.z >= s->z1) return sums;
@@ -72,9 +72,9 @@ inline_always uint2 label_row_count(const label_job *s, uint brick, uint row, gl
 }
 
 /* Sums of a tile; store: what its rows have is kept. */
-inline_always uint2 label_tile_count(const label_job *s, tile_scan scan, uint number, global const BITS *samples,
+inline_always uint2 label_tile_count(const label_job *s, tile_scan scan, uint tile_index, global const BITS *samples,
                                      label_arrays out, bool store, uint *cells) {
-    const uint first = label_tile_first(s, number), end = label_tile_end(s, number);
+    const uint first = label_tile_first(s, tile_index), end = label_tile_end(s, tile_index);
     uint2 running = 0;
     for (uint n = 0; n < s->tile_bricks * BRICK_WORDS; n += WORK_ITEMS) {
         const uint item = n + (uint)get_local_id(0), brick = first + item / BRICK_WORDS, row = item % BRICK_WORDS;
@@ -101,9 +101,9 @@ inline_always uint2 label_tile_count(const label_job *s, tile_scan scan, uint nu
 }
 
 /* Appends the tile's bricks that emit something. */
-inline_always void label_tile_list(const label_job *s, uint number, label_arrays out, global uint *active,
+inline_always void label_tile_list(const label_job *s, uint tile_index, label_arrays out, global uint *active,
                                    global uint *head) {
-    const uint first = label_tile_first(s, number), end = label_tile_end(s, number);
+    const uint first = label_tile_first(s, tile_index), end = label_tile_end(s, tile_index);
     group_barrier();
     for (uint n = 0; n < s->tile_bricks; n += WORK_ITEMS) {
         const uint brick = first + n + (uint)get_local_id(0);
@@ -113,11 +113,11 @@ inline_always void label_tile_list(const label_job *s, uint number, label_arrays
     }
 }
 
-inline_always void label_tile_settle(const label_job *s, tile_scan scan, uint number, global const BITS *samples,
+inline_always void label_tile_settle(const label_job *s, tile_scan scan, uint tile_index, global const BITS *samples,
                                      label_arrays out) {
     uint unposted, none = 0;
     bool look = false;
-    while (!tile_settle(scan, number, look, &unposted)) {
+    while (!tile_settle(scan, tile_index, look, &unposted)) {
         tile_post(scan, unposted, label_tile_count(s, scan, unposted, samples, out, false, &none));
         look = true;
     }
@@ -131,21 +131,21 @@ kernel void label_classify(label_job s, global const BITS *samples, global ulong
     const tile_scan scan = {s.spin_limit, state + LABEL_HEAD_WORDS, shared, sums};
     const label_arrays out = {words, offsets, bases, rows};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0, cells = 0;
-    while (number < s.tile_count) {
-        number = ticket_take(&state[LABEL_TICKET], shared);
-        if (number < s.tile_count) {
-            const uint2 found = label_tile_count(&s, scan, number, samples, out, true, &cells);
-            tile_post(scan, number, found);
+    uint tile_index = 0, cells = 0;
+    while (tile_index < s.tile_count) {
+        tile_index = ticket_take(&state[LABEL_TICKET], shared);
+        if (tile_index < s.tile_count) {
+            const uint2 found = label_tile_count(&s, scan, tile_index, samples, out, true, &cells);
+            tile_post(scan, tile_index, found);
             if (get_local_id(0) == 0 && (found.x | found.y)) {
                 atomic_add(&state[LABEL_VERTEX_UNITS], found.x / 64 + 1);
                 atomic_add(&state[LABEL_TRIANGLE_UNITS], found.y / 64 + 1);
             }
-            label_tile_list(&s, number, out, active, state);
+            label_tile_list(&s, tile_index, out, active, state);
             if (SETTLES_LATER)
-                own_append(&own, number, scan.tiles);
+                own_append(&own, tile_index, scan.tiles);
             else
-                label_tile_settle(&s, scan, number, samples, out);
+                label_tile_settle(&s, scan, tile_index, samples, out);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = scan.tiles[TILE_WORDS * n + TILE_NEXT])

@@ -22,7 +22,7 @@ kernel void label_emit(label_job s, global const BITS *samples, global ulong *wo
                        global const uint *tables, global float *positions, global uint *triangles,
                        global uint *labels) {
     local uint shared[4];
-    local label_row made[LABEL_TEAMS];
+    local label_row made[LABEL_ROWS_AT_ONCE];
     const label_arrays in = {words, offsets, bases, rows};
     const label_mesh out = {positions, triangles, labels};
     global const uint *tiles = state + LABEL_HEAD_WORDS;

@@ -53,9 +53,9 @@ inline_always uint label_list(ulong word, uint item, uint count, uint *list) {
 }
 
 /* Brings the vertices that are listed to the mesh. p: of the brick's first row. */
-inline_always void label_vertices_flush(const label_job *s, label_place p, global const uint *tables, label_mesh out,
+inline_always void label_vertices_flush(const label_job *s, row_origin p, global const uint *tables, label_mesh out,
                                         label_work *work) {
-    global const float *places = (global const float *)(tables + LABEL_PLACES);
+    global const float *from_owners = (global const float *)(tables + LABEL_POSITIONS);
     const int x0 = s->first[0] + (int)(64 * p.w), y0 = s->first[1] + (int)p.y, z0 = s->first[2] + (int)p.z;
     const uint parity = s->parity + p.y + p.z;
     const slab_f32 *m = s->matrix;
@@ -63,8 +63,8 @@ inline_always void label_vertices_flush(const label_job *s, label_place p, globa
         float from[3][LABEL_LANES], positions[3 * LABEL_LANES];
         for (uint n = 0; n < LABEL_LANES; n++) {
             const uint item = work->list[first + n], odd = (parity + item + (item >> 6) + (item >> 9)) & 1;
-            global const float *place = places + 3 * (odd * LABEL_ROW_TYPES + (item >> 11 & 31));
-            from[0][n] = place[0], from[1][n] = place[1], from[2][n] = place[2];
+            global const float *from_owner = from_owners + 3 * (odd * LABEL_ROW_TYPES + (item >> 11 & 31));
+            from[0][n] = from_owner[0], from[1][n] = from_owner[1], from[2][n] = from_owner[2];
         }
         for (uint n = 0; n < LABEL_LANES; n++) {
             const uint item = work->list[first + n];
@@ -93,7 +93,7 @@ typedef struct label_sides {
 
 inline_always bytes64 label_same(samples64 a, samples64 b) { return __builtin_convertvector(a == b, bytes64); }
 
-inline_always label_sides label_sides_make(const label_job *s, label_place p, global const BITS *samples,
+inline_always label_sides label_sides_make(const label_job *s, row_origin p, global const BITS *samples,
                                            label_work *work) {
     const ulong dy = p.y + 1 < s->ny ? s->nx : 0, dz = p.z + 1 < s->nz ? (ulong)s->nx * s->ny : 0;
     const ulong start = label_start(s, p.y, p.z, p.w);
@@ -135,8 +135,9 @@ inline_always uint label_next(uint at, uint type, uint brick, label_arrays in, c
                         : work->bricks[brick] + in.bases[at].vertices + in.offsets[(ulong)LABEL_OFFSETS * at + type];
 }
 
-/* y1, z1: the brick's number among those beside, of the next row in y and in z. */
-inline_always void label_slots_make(const label_job *s, label_place p, uint own, label_arrays in, label_work *work) {
+/* next_y, next_z: which of work->bricks has the next row in y, or in z: 0 this brick, else 2 or 4. y1, z1, yz1: these
+ * rows. */
+inline_always void label_slots_make(const label_job *s, row_origin p, uint own, label_arrays in, label_work *work) {
     const uint next_y = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
                next_z = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
     const uint y1 = label_row_find(s, p.y + 1, p.z, p.w, in.rows), z1 = label_row_find(s, p.y, p.z + 1, p.w, in.rows);
@@ -152,7 +153,7 @@ inline_always void label_slots_make(const label_job *s, label_place p, uint own,
 }
 
 /* Of edges that the samples at 64 own. */
-inline_always void label_next_make(const label_job *s, label_place p, label_arrays in, label_work *work) {
+inline_always void label_next_make(const label_job *s, row_origin p, label_arrays in, label_work *work) {
     const uint next_y = p.y % BRICK_ROWS + 1 == BRICK_ROWS ? 2 : 0,
                next_z = (p.z - s->z0) % BRICK_PLANES + 1 == BRICK_PLANES ? 4 : 0;
     const uint x1 = label_row_find(s, p.y, p.z, p.w + 1, in.rows);
@@ -199,7 +200,7 @@ inline_always void label_two_emit(uint x, uint odd, uint16 numbers, uint16 at_ne
     work->triangle_count += count;
 }
 
-/* Of one with more labels, or without an own pair of them. */
+/* The triangles of a cube with more than two labels. */
 inline_always void label_more_emit(const label_job *s, local const label_row *r, uint x, uint odd,
                                    global const BITS *first, global const uint *tables, label_work *work) {
     const label_numbers v = {r, x};
@@ -218,7 +219,7 @@ inline_always void label_more_emit(const label_job *s, local const label_row *r,
 
 /* ------------------------------------------------------------------------------------------------------------- rows */
 
-inline_always void label_row_emit(const label_job *s, label_place p, uint own, label_near near, label_arrays in,
+inline_always void label_row_emit(const label_job *s, row_origin p, uint own, label_near near, label_arrays in,
                                   global const uint *tiles, global const BITS *samples, global const uint *tables,
                                   label_mesh out, local label_row *r, label_work *work) {
     const label_sides sides = label_sides_make(s, p, samples, work);
@@ -261,7 +262,7 @@ inline_always void label_row_prefetch(uint brick, uint row, label_arrays in) {
 
 /* Prefetches what kernel 1 has left of a brick's rows and of the next ones in y and z, and the samples. */
 inline_always void label_brick_prefetch(const label_job *s, uint brick, label_arrays in, global const BITS *samples) {
-    const label_place p = label_place_of(s, brick, 0);
+    const row_origin p = row_origin_of(s, brick, 0);
     const uint next_y = p.y + BRICK_ROWS < s->ny ? s->words_x : 0;
     const uint next_z = p.z + BRICK_PLANES < s->z1 ? s->words_x * s->bricks_y : 0;
     label_row_prefetch(brick + next_y + next_z, 0, in);
@@ -272,7 +273,7 @@ inline_always void label_brick_prefetch(const label_job *s, uint brick, label_ar
 }
 
 /* Numbers of the first vertices of the tiles of a brick and of those that lie 0 or 1 bricks further in x, y and z. */
-inline_always void label_bricks_beside(const label_job *s, uint brick, label_place p, global const uint *tiles,
+inline_always void label_bricks_beside(const label_job *s, uint brick, row_origin p, global const uint *tiles,
                                        label_work *work) {
     for (uint n = 0; n < 8; n++) {
         const bool exists = p.w + (n & 1) < s->words_x && p.y + (n & 2 ? BRICK_ROWS : 0) < s->ny &&
@@ -286,19 +287,19 @@ inline_always void label_brick_emit(const label_job *s, uint brick, label_arrays
                                     global const BITS *samples, global const uint *tables, label_mesh out,
                                     local label_row *made, label_work *work) {
     const label_near near = label_near_of(s, brick, tiles);
-    const label_place place = label_place_of(s, brick, 0);
+    const row_origin origin = row_origin_of(s, brick, 0);
     const label_row_base base = in.bases[(ulong)BRICK_WORDS * brick + lowest_bit(in.rows[brick])];
     work->vertex = near.vertices + base.vertices - s->vertex_base, work->triangle = near.triangles + base.triangles;
     work->vertex_count = work->triangle_count = 0;
     for (uint n = 0; n < LABEL_LANES; n++) work->words[n] = work->numbers[n] = work->next[n] = 0;
-    label_bricks_beside(s, brick, place, tiles, work);
+    label_bricks_beside(s, brick, origin, tiles, work);
     for (uint rows = in.rows[brick]; rows; rows &= rows - 1) {
         const uint row = lowest_bit(rows);
-        label_row_emit(s, label_place_of(s, brick, row), BRICK_WORDS * brick + row, near, in, tiles, samples, tables,
+        label_row_emit(s, row_origin_of(s, brick, row), BRICK_WORDS * brick + row, near, in, tiles, samples, tables,
                        out, made, work);
-        if (work->vertex_count >= LABEL_BATCH) label_vertices_flush(s, place, tables, out, work);
+        if (work->vertex_count >= LABEL_BATCH) label_vertices_flush(s, origin, tables, out, work);
     }
-    label_vertices_flush(s, place, tables, out, work);
+    label_vertices_flush(s, origin, tables, out, work);
     label_triangles_flush(s, out, work);
 }
 

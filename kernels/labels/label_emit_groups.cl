@@ -19,7 +19,7 @@ inline_always uint label_triangles_before(local const label_row *r, uint x) {
 
 inline_always void label_cube_emit(const label_job *s, local const label_row *r, uint x, global const BITS *samples,
                                    global const uint *tables, label_mesh out) {
-    const label_place p = r->place;
+    const row_origin p = r->origin;
     const label_numbers v = {r, x};
     const uint odd = (s->parity + 64 * p.w + x + p.y + p.z) & 1;
     const ulong plane = (ulong)s->nx * s->ny;
@@ -40,10 +40,10 @@ inline_always void label_cube_emit(const label_job *s, local const label_row *r,
 
 inline_always void label_row_emit(const label_job *s, local const label_row *r, uint lane, global const BITS *samples,
                                   global const uint *tables, label_mesh out) {
-    const label_place p = r->place;
+    const row_origin p = r->origin;
     ulong cubes = 0;
     for (uint t = 0; t < 5; t++) cubes |= label_cells_any(r->cells[t]);
-    for (uint x = lane; x < 64; x += LABEL_TEAM) {
+    for (uint x = lane; x < 64; x += LABEL_ROW_ITEMS) {
         const uint index = 64 * p.w + x, odd = (s->parity + index + p.y + p.z) & 1;
         const label_numbers v = {r, x};
         for (uint type = 0; type < LABEL_ROW_TYPES; type++)
@@ -64,12 +64,12 @@ inline_always void label_brick_prefetch(const label_job *s, uint brick, label_ar
 inline_always void label_brick_emit(const label_job *s, uint brick, label_arrays in, global const uint *tiles,
                                     global const BITS *samples, global const uint *tables, label_mesh out,
                                     local label_row *made, label_work *work) {
-    const uint team = (uint)get_local_id(0) / LABEL_TEAM, lane = (uint)get_local_id(0) % LABEL_TEAM;
+    const uint team = (uint)get_local_id(0) / LABEL_ROW_ITEMS, lane = (uint)get_local_id(0) % LABEL_ROW_ITEMS;
     const label_near near = label_near_of(s, brick, tiles);
-    for (uint first = 0; first < BRICK_WORDS; first += LABEL_TEAMS) {
+    for (uint first = 0; first < BRICK_WORDS; first += LABEL_ROWS_AT_ONCE) {
         const uint row = first + team;
         const bool is_there = row < BRICK_WORDS && (in.rows[brick] >> row & 1);
-        if (is_there && lane == 0) label_row_make(s, label_place_of(s, brick, row), near, in, tiles, &made[team]);
+        if (is_there && lane == 0) label_row_make(s, row_origin_of(s, brick, row), near, in, tiles, &made[team]);
         group_barrier();
         if (is_there) label_row_emit(s, &made[team], lane, samples, tables, out);
         group_barrier();

@@ -16,7 +16,7 @@ enum { LABEL_ROW_TYPES = 21, LABEL_SHARED_TYPES = 12, LABEL_OFFSETS = 16, LABEL_
  *
  *     for each of 64 patterns          the number of interfaces, then these
  *     LABEL_MAPS                       for each parity and tetrahedron: its eleven vertices, then its corners
- *     LABEL_PLACES                     for each parity and type: the vertex from its owner, three floats
+ *     LABEL_POSITIONS                  for each parity and type: the vertex from its owner, three floats
  *     LABEL_CUBES                      for each parity and pattern of a cube with two labels (bits set: the first one),
  *                                      in bytes: the number of triangles, then three slots each
  *
@@ -27,8 +27,8 @@ enum {
     LABEL_MAP_WORDS = 16,
     LABEL_MAPS = 64 * LABEL_CASE_WORDS,
     LABEL_MAP_CORNERS = 11, /* of a map: its corners, 4 bits each */
-    LABEL_PLACES = LABEL_MAPS + 2 * 5 * LABEL_MAP_WORDS,
-    LABEL_CUBES = LABEL_PLACES + 2 * LABEL_ROW_TYPES * 3,
+    LABEL_POSITIONS = LABEL_MAPS + 2 * 5 * LABEL_MAP_WORDS,
+    LABEL_CUBES = LABEL_POSITIONS + 2 * LABEL_ROW_TYPES * 3,
     LABEL_SLOT_NEXT = 16,
     LABEL_TABLE_WORDS = LABEL_CUBES + 2 * 256 * LABEL_CASE_WORDS
 };

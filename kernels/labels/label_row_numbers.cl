@@ -8,8 +8,8 @@
 
 #include "label_classify.cl"
 
-#define LABEL_TEAM  (WORK_ITEMS == 1 ? 1 : 32)
-#define LABEL_TEAMS (WORK_ITEMS / LABEL_TEAM)
+#define LABEL_ROW_ITEMS    (WORK_ITEMS == 1 ? 1 : 32)
+#define LABEL_ROWS_AT_ONCE (WORK_ITEMS / LABEL_ROW_ITEMS)
 
 /* What the team knows of its row: label_job.h has the order of words. */
 typedef struct label_row {
@@ -18,7 +18,7 @@ typedef struct label_row {
     uint numbers[LABEL_ROW_WORDS]; /* of the first vertex in the word */
     uint next[LABEL_WORD_YZ1];     /* of the vertex at 64, in the next brick */
     uint triangles;                /* index of the row's first */
-    label_place place;
+    row_origin origin;
 } label_row;
 
 typedef struct label_mesh {
@@ -40,7 +40,7 @@ inline_always ulong label_word_of(uint at, uint type, label_arrays in) {
     return at == NO_ROW ? 0 : in.words[(ulong)LABEL_WORDS * at + type];
 }
 
-/* A tile that rows are looked for in first: its own row's neighbours mostly lie there too. */
+/* The tile of the row that is emitted. Rows are looked for there first, as most of its neighbours lie there too. */
 typedef struct label_near {
     uint first, end; /* bricks */
     uint vertices, triangles;
@@ -49,8 +49,7 @@ typedef struct label_near {
 inline_always label_near label_near_of(const label_job *s, uint brick, global const uint *tiles) {
     const uint tile = label_tile_of(s, brick);
     label_near near = {label_tile_first(s, tile), label_tile_end(s, tile),
-                       s->vertex_base + tile_before(tiles, tile, TILE_VERTICES),
-                       tile_before(tiles, tile, TILE_TRIANGLES)};
+                       s->vertex_base + tile_before(tiles, tile, TILE_SUM_X), tile_before(tiles, tile, TILE_SUM_Y)};
     return near;
 }
 
@@ -78,7 +77,7 @@ inline_always void label_numbers_load(const label_job *s, uint at, label_near ne
 }
 
 /* near: the tile of the row's brick. */
-inline_always void label_row_make(const label_job *s, label_place p, label_near near, label_arrays in,
+inline_always void label_row_make(const label_job *s, row_origin p, label_near near, label_arrays in,
                                   global const uint *tiles, local label_row *r) {
     const uint own = label_row_find(s, p.y, p.z, p.w, in.rows), y1 = label_row_find(s, p.y + 1, p.z, p.w, in.rows);
     const uint z1 = label_row_find(s, p.y, p.z + 1, p.w, in.rows),
@@ -126,7 +125,7 @@ inline_always void label_row_make(const label_job *s, label_place p, label_near 
 #pragma unroll
     for (uint n = 0; n < 5; n++) r->cells[n] = label_cells_in(label_tetrahedra(even, e, n), cubes);
     r->triangles = own == NO_ROW ? 0 : near.triangles + in.bases[own].triangles;
-    r->place = p;
+    r->origin = p;
 }
 
 /* --------------------------------------------------------------------------------------------------------- vertices */
@@ -141,9 +140,9 @@ inline_always float4 label_column(const label_job *s, uint column) {
     return (float4)(s->matrix[column], s->matrix[4 + column], s->matrix[8 + column], 0);
 }
 
-inline_always label_line label_line_of(const label_job *s, label_place p, uint type, uint odd,
+inline_always label_line label_line_of(const label_job *s, row_origin p, uint type, uint odd,
                                        global const uint *tables) {
-    global const uint *offset = tables + LABEL_PLACES + 3 * (odd * LABEL_ROW_TYPES + type);
+    global const uint *offset = tables + LABEL_POSITIONS + 3 * (odd * LABEL_ROW_TYPES + type);
     label_line l;
     l.x = as_float(offset[0]);
     l.matrix = label_column(s, 0);

@@ -45,7 +45,7 @@ inline_always void label_types(ulong even, const ulong e[LABEL_EDGES], ulong t[L
     t[20] = label_select(even, far & e[EZ_XY1] & e[EY_XZ1] & e[EX_YZ1], odd0 & e[EY_Z1] & e[EZ_Y1] & e[EX_YZ1]);
 }
 
-/* The tetrahedra of 64 cubes at one place in the cube: those with three, four, five and six edges that differ. */
+/* The tetrahedra of 64 cubes at one position in the cube: those with three, four, five and six edges that differ. */
 typedef struct label_cells {
     ulong three, four, five, six;
 } label_cells;
@@ -86,7 +86,7 @@ inline_always uint label_cell_triangles(label_cells c, ulong cubes) {
 }
 
 /* Bits of cubes that lie in the grid, in a row. */
-inline_always ulong label_cubes(const label_job *s, label_place p) {
+inline_always ulong label_cubes(const label_job *s, row_origin p) {
     return p.y + 1 < s->ny && p.z + 1 < s->nz ? label_mask(s->nx - 64 * p.w - 1) : 0;
 }
 

@@ -34,13 +34,13 @@ enum {
 enum { LABEL_EDGES = 18 };
 
 /* A row of 64 samples in the grid. */
-typedef struct label_place {
+typedef struct row_origin {
     uint y, z, w;
-} label_place;
+} row_origin;
 
 /* Row n, 0 to 31, of a brick of the slab. */
-inline_always label_place label_place_of(const label_job *s, uint brick, uint row) {
-    label_place p;
+inline_always row_origin row_origin_of(const label_job *s, uint brick, uint row) {
+    row_origin p;
     p.w = brick % s->words_x;
     p.y = brick / s->words_x % s->bricks_y * BRICK_ROWS + row % BRICK_ROWS;
     p.z = s->z0 + brick / s->words_x / s->bricks_y * BRICK_PLANES + row / BRICK_ROWS;

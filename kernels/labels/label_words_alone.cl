@@ -20,7 +20,7 @@ inline_always ulong label_differ(samples64 a, samples64 b) {
     return mask_word(__builtin_convertvector(a != b, bytes64));
 }
 
-inline_always void label_edges_make(const label_job *s, label_place p, global const BITS *samples,
+inline_always void label_edges_make(const label_job *s, row_origin p, global const BITS *samples,
                                     ulong e[LABEL_EDGES]) {
     const bool has_y = p.y + 1 < s->ny, has_z = p.z + 1 < s->nz;
     const uint left = s->nx - 64 * p.w;
@@ -56,7 +56,7 @@ inline_always void label_edges_make(const label_job *s, label_place p, global co
 
 /* Prefetches the samples of a brick and of the next row and plane. */
 inline_always void label_samples_prefetch(const label_job *s, uint brick, global const BITS *samples) {
-    const label_place p = label_place_of(s, brick, 0);
+    const row_origin p = row_origin_of(s, brick, 0);
     for (uint z = p.z; z < min(p.z + BRICK_PLANES + 1, s->nz); z++)
         for (uint y = p.y; y < min(p.y + BRICK_ROWS + 1, s->ny); y++) {
             global const BITS *row = samples + label_start(s, y, z, p.w);
@@ -66,7 +66,7 @@ inline_always void label_samples_prefetch(const label_job *s, uint brick, global
 
 /* Whether a brick, with the next row, plane and column, has one label: it then emits nothing. */
 inline_always bool label_brick_uniform(const label_job *s, uint brick, global const BITS *samples) {
-    const label_place p = label_place_of(s, brick, 0);
+    const row_origin p = row_origin_of(s, brick, 0);
     const uint left = s->nx - 64 * p.w, y1 = min(p.y + BRICK_ROWS + 1, s->ny), z1 = min(p.z + BRICK_PLANES + 1, s->nz);
     const ulong all = label_mask(left);
     const BITS label = samples[label_start(s, p.y, p.z, p.w)];

@@ -20,7 +20,7 @@ inline_always void label_bit(label_long *l, uint x, bool differs) {
 
 inline_always ulong label_shifted(label_long l) { return l.word >> 1 | l.last << 63; }
 
-inline_always void label_edges_make(const label_job *s, label_place p, global const BITS *samples,
+inline_always void label_edges_make(const label_job *s, row_origin p, global const BITS *samples,
                                     ulong e[LABEL_EDGES]) {
     const bool has_y = p.y + 1 < s->ny, has_z = p.z + 1 < s->nz;
     const uint left = s->nx - 64 * p.w, end = min(left, 65u);

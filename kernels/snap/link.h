@@ -7,8 +7,8 @@
 #ifndef LINK_H
 #define LINK_H
 
-/* SAMPLE(x, y, z): the steps to it. First along the axes, index 2 * axis + upwards; then across the faces xy, xz and
- * yz, index 6 + 4 * face + upwards along the first axis + 2 * upwards along the second. */
+/* SAMPLE(x, y, z): the steps from a sample to one of its link. First along the axes, index 2 * axis + upwards; then
+ * across the faces xy, xz and yz, index 6 + 4 * face + upwards along the first axis + 2 * upwards along the second. */
 #define LINK_SAMPLES(SAMPLE)                                                                                           \
     SAMPLE(-1, 0, 0)                                                                                                   \
     SAMPLE(1, 0, 0)                                                                                                    \

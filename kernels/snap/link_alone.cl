@@ -7,7 +7,7 @@
 #include "link.h"
 #include "../structured/tetrahedra.cl"
 
-/* Signs of a link, by index. Samples outside the grid are in none. */
+/* Signs of a link, by index. Samples outside the grid are in none of the three. */
 typedef struct link_signs {
     lanes plus[LINK_EVEN], minus[LINK_EVEN], zero[LINK_EVEN];
 } link_signs;

@@ -39,8 +39,8 @@ inline_always void link_offsets(const slab *s, long offsets[LINK_EVEN]) {
     for (uint n = 0; n < LINK_EVEN; n++) offsets[n] = link_offset(s, n);
 }
 
-/* Whether a sample on no border of the grid is near enough to a crossing: the sample of its link that differs most on
- * the other side has the nearest one along its kind of edge. */
+/* Whether a sample on no border of the grid is near enough to a crossing: on the edge to
+ * the sample of its link that differs most from it, on the other side, lies the nearest one, as a part of its edge. */
 inline_always bool is_violated(const slab *s, global const BITS *at, const long *offsets, bool odd) {
     const REAL half_of = (REAL)0.5f, here = SAMPLE_VALUE(*at);
     REAL least = here, most = here;

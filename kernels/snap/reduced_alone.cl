@@ -2,20 +2,27 @@
  * reduced_alone.cl - regular points within the grid, for a work-item alone: links are reduced to their samples along
  * the axes
  *
- * Where the ring of a link's sample changes between + and - exactly twice, the sample may take the other sign: the link
- * keeps its number of + parts and of - parts, for the reason that a regular sample may be snapped. So the samples
- * across faces take the signs of their neighbours along the axes, and only those six are left to look at.
+ * The test asks whether the samples + of a link are connected, and the samples -. If the ring around a sample n of the
+ * link changes between + and - exactly twice, n may take the other sign: the link keeps its number of components of +
+ * and of -, for the reason that a regular sample may be snapped. So the samples across faces take the signs of their
+ * neighbours along the axes, and only those six are left to look at.
  *
- * Of an even link, those along the axes are odd, + or - and no vertices yet. Each of the twelve others, n, lies between
- * two of them, p and q, in a ring:
+ * The six samples along the axes of an even link are odd: + or -, and no vertices yet. Each of the twelve others, n,
+ * lies between two of them, p and q, and has this ring:
  *
- *       x1--x2       1. Where n is a vertex, its ring has to change twice. Then n counts as + or -, as p does.
- *      / \ / \       2. Where n differs from both p and q: if on one side, x1 and x2 or x3 and x4, a sample is as n
- *     p---n---q         is, n may take the sign of p. If on none, n is a part of the link by itself, and goes. If on
- *      \ / \ /          both sides, the link is left to regular_alone.cl; smooth surfaces have none.
- *       x4--x3       3. Now no n joins or parts anything, and samples along the axes are an octahedron. Where two on
- *                       one axis differ, + and - are connected. Where all six agree, one n must have been the other
- *                       part; otherwise two on an axis are apart from each other.
+ *       x1--x2
+ *      / \ / \
+ *     p---n---q
+ *      \ / \ /
+ *       x4--x3
+ *
+ * 1. Where n is a vertex, its ring has to change twice. From here on n counts as + or -, as p does.
+ * 2. Where n differs from both p and q, look at the two sides of the ring, x1 with x2 and x3 with x4. If one side has a
+ *    sample with the sign of n, n takes the sign of p. If none has, n is a component by itself, and is left out. If
+ * both have, the link is left to regular_alone.cl; smooth surfaces have no such links.
+ * 3. Now no n connects or separates anything, and the samples along the axes are an octahedron. Where the two on one
+ *    axis differ, + and - are connected. Where all six agree, exactly one n must have been left out. Otherwise two that
+ *    have the same sign on an axis are not connected.
  *
  * An odd link is such an octahedron. Where two on an axis differ, the rings of vertices on the other axes change twice.
  */

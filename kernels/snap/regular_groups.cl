@@ -15,7 +15,7 @@ constant const uint link_joined[2][LINK_EVEN] = {{0x01540, 0x02a80, 0x140c0, 0x2
                                                  {0x0003c, 0x0003c, 0x00033, 0x00033, 0x0000f, 0x0000f}};
 constant const uint link_rings[2][3] = {{0x3c03c, 0x03c33, 0x003cf}, {0x0003c, 0x00033, 0x0000f}};
 
-/* The signs of a sample's link. Samples outside the grid are in none. */
+/* The signs of a sample's link. Samples outside the grid are in none of the three. */
 typedef struct link_masks {
     uint plus, minus, zero;
 } link_masks;
@@ -79,7 +79,8 @@ inline_always bool point_regular(link_masks l, uint border, bool odd) {
 }
 
 /* Of the samples in a row those that are regular points. */
-inline_always lanes set_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted, bool odd) {
+inline_always lanes rows_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted,
+                                 bool odd) {
     const uint border_y = r.y == 0 || r.y + 1 == s->ny, border_z = r.z == 0 || r.z + 1 == s->nz;
     lanes regular = 0;
 #pragma unroll 1

@@ -11,7 +11,7 @@
  * 5. snap_even, once for each colour of even samples (link.h), and snap_odd: violated samples that are regular points
  *    (regular_alone.cl, regular_groups.cl) become zeros. Samples of one colour do not see each other, so a word
  *    that another group stores to meanwhile has the same bits for its readers before and after;
- * 6. snap_join: the odd zeros, which wait elsewhere while others read the words, join the even ones.
+ * 6. snap_join: the zeros of odd samples, which snap_odd has stored in `violated`, are added to the words of zeros.
  */
 #ifndef SNAP_CL
 #define SNAP_CL
@@ -34,7 +34,7 @@ inline_always uint run_take(global uint *ticket, uint length, local uint *shared
 
 kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ranges, global ulong *words,
                       global brick_state *bricks, global uint *state) {
-    local sign_room room;
+    local sign_memory memory;
     local uint shared[1];
     global uint *ticket = snap_ticket(&s, state, TICKET_SIGN);
     words += UNIFORM_BRICKS * BRICK_WORDS;
@@ -42,7 +42,7 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
         const tile t = tile_locate(&s, n);
         for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
             layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges,
-                       &state[s.results.head_offset + STATE_NONFINITE], &room);
+                       &state[s.results.head_offset + STATE_NONFINITE], &memory);
     }
 }
 
@@ -51,18 +51,18 @@ kernel void snap_sign(slab s, global const BITS *samples, global brick_range *ra
 inline_always uint brick_count_of(const slab *s) { return window_layers(s) * s->bricks_y * s->words_x; }
 
 /* Whether a brick is mixed, or one around it is on another side. */
-inline_always bool brick_near(const slab *s, uint number, global const brick_state *bricks) {
-    const brick_steps steps = brick_steps_of(s, number);
-    const uint sign = bricks[number].sign;
+inline_always bool brick_near(const slab *s, uint brick, global const brick_state *bricks) {
+    const brick_steps steps = brick_steps_of(s, brick);
+    const uint sign = bricks[brick].sign;
     uint differ = 0;
     if (sign == SIGN_MIXED) return true;
 #pragma unroll
     for (uint n = 0; n < 27; n++)
-        differ |= bricks[number + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3]].sign ^ sign;
+        differ |= bricks[brick + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3]].sign ^ sign;
     return differ != 0;
 }
 
-/* Bricks that are entered in the list at once: work-items alone do not wait for each other at every brick. */
+/* Bricks that are entered in the list together, so that work-items alone do not wait for each other at every brick. */
 #define NEAR_AT_ONCE (WORK_ITEMS == 1 ? 64u : 1u)
 
 kernel void snap_near(slab s, global const brick_state *bricks, global uint *near, global uint *state) {
@@ -72,8 +72,8 @@ kernel void snap_near(slab s, global const brick_state *bricks, global uint *nea
         for (uint n = first; n < min(first + NEAR_AT_ONCE, count); n++)
             if (brick_near(&s, n, bricks)) found[found_count++] = n;
         if (!found_count) continue;
-        const uint place = atomic_add(&state[s.results.head_offset + STATE_NEAR_BRICKS], found_count);
-        for (uint n = 0; n < found_count; n++) near[place + n] = found[n];
+        const uint at = atomic_add(&state[s.results.head_offset + STATE_NEAR_BRICKS], found_count);
+        for (uint n = 0; n < found_count; n++) near[at + n] = found[n];
     }
 }
 
@@ -88,7 +88,8 @@ inline_always uint run_length(uint count) {
     return clamp(count / (16 * (uint)get_num_groups(0)), (uint)GROUP_BRICKS, 256u);
 }
 
-/* Loops over the bricks of a run: n, and whether there is one for this work-item. */
+/* RUNS_OF takes runs of a list of `count` bricks by ticket, BRICKS_OF_RUN goes over a run, GROUP_BRICKS at a time. They
+ * use `shared`, and define length, run, end and step. */
 #define RUNS_OF(count, ticket)                                                                                         \
     const uint length = run_length(count);                                                                             \
     for (uint run = run_take(ticket, length, shared); run < count; run = run_take(ticket, length, shared))
@@ -108,22 +109,22 @@ kernel void snap_violated(slab s, global const BITS *samples, global const ulong
                           global ulong *violated, global uint *violated_bricks) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_NEAR_BRICKS];
-    violated_room room;
+    violated_work work;
     brick_around a;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     global ulong *zeros = words + BRICK_WORDS * (ulong)s.snapping.zero_bricks;
     violated_results results = {violated, bricks, violated_bricks,
                                 &state[s.results.head_offset + STATE_VIOLATED_BRICKS]};
-    violated_begin(&s, &room);
+    violated_begin(&s, &work);
     RUNS_OF(count, snap_ticket(&s, state, TICKET_VIOLATED)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK, number = near[min(n, end - 1)];
+        const uint n = step + OWN_BRICK, brick = near[min(n, end - 1)];
         if (n >= end) continue;
-        for (uint row = ITEM_ROW; row < BRICK_WORDS && bricks[number].sign == SIGN_MIXED; row += BRICK_ITEMS)
-            zeros[BRICK_WORDS * (ulong)number + row] = 0;
-        around_make(&s, words, bricks, number, &a);
-        violated_find(&s, &a, brick_place_of(&s, number), number, samples, cells, results, &room);
+        for (uint row = ITEM_ROW; row < BRICK_WORDS && bricks[brick].sign == SIGN_MIXED; row += BRICK_ITEMS)
+            zeros[BRICK_WORDS * (ulong)brick + row] = 0;
+        around_make(&s, words, bricks, brick, &a);
+        violated_find(&s, &a, brick_origin(&s, brick), brick, samples, cells, results, &work);
     }
-    violated_end(&s, samples, results, &room);
+    violated_end(&s, samples, results, &work);
 }
 
 #endif
@@ -135,16 +136,16 @@ kernel void snap_words(slab s, global ulong *words, global brick_state *bricks, 
     const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += UNIFORM_BRICKS * BRICK_WORDS;
     RUNS_OF(count, snap_ticket(&s, state, TICKET_WORDS)) BRICKS_OF_RUN(count) {
-        const uint n = step + OWN_BRICK, number = violated_bricks[min(n, end - 1)], sign = bricks[number].sign;
-        const brick_place p = brick_place_of(&s, number);
+        const uint n = step + OWN_BRICK, brick = violated_bricks[min(n, end - 1)], sign = bricks[brick].sign;
+        const grid_index origin = brick_origin(&s, brick);
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end && sign != SIGN_MIXED; row += BRICK_ITEMS) {
-            const bool exists = p.y + row % BRICK_ROWS < s.ny && p.z + row / BRICK_ROWS < s.z1;
-            global ulong *word = words + BRICK_WORDS * (ulong)number + row;
-            *word = exists ? sign_word(sign) & word_valid(&s, p.w) : 0;
+            const bool exists = origin.y + row % BRICK_ROWS < s.ny && origin.z + row / BRICK_ROWS < s.z1;
+            global ulong *word = words + BRICK_WORDS * (ulong)brick + row;
+            *word = exists ? sign_word(sign) & word_valid(&s, origin.x / 64) : 0;
             word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
         }
         group_barrier();
-        if (n < end && ITEM_ROW == 0) bricks[number].sign = SIGN_MIXED;
+        if (n < end && ITEM_ROW == 0) bricks[brick].sign = SIGN_MIXED;
     }
 }
 
@@ -170,14 +171,14 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
         if (n >= end) continue;
         if (n + 2 < count) around_prefetch(&s, words, violated, violated_bricks[n + 2]);
         const ulong index = BRICK_WORDS * (ulong)violated_bricks[n];
-        const brick_place p = brick_place_of(&s, violated_bricks[n]);
+        const grid_index origin = brick_origin(&s, violated_bricks[n]);
         for (uint set = ITEM_ROW; set < SETS_STRIDED; set += BRICK_ITEMS) {
-            const row_set r = set_strided(p.y, p.z, p.w, set, odd_y, odd_z);
-            lanes wanted = set_load(violated + index, r, true) & samples_even(&s, r);
+            const row_set r = rows_strided(origin.y, origin.z, origin.x / 64, set, odd_y, odd_z);
+            lanes wanted = rows_load(violated + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
             around_make(&s, words, bricks, violated_bricks[n], &a);
-            wanted = set_regular(&s, &a, r, true, wanted, false);
-            if (lanes_any(wanted)) set_add(wanted, zeros + index, r);
+            wanted = rows_regular(&s, &a, r, true, wanted, false);
+            if (lanes_any(wanted)) rows_add(wanted, zeros + index, r);
         }
     }
 }
@@ -194,23 +195,23 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
         if (n >= end) continue;
         if (n + 2 < count) around_prefetch(&s, words, violated, violated_bricks[n + 2]);
         const ulong index = BRICK_WORDS * (ulong)violated_bricks[n];
-        const brick_place p = brick_place_of(&s, violated_bricks[n]);
+        const grid_index origin = brick_origin(&s, violated_bricks[n]);
         bool have_around = false;
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
-            const row_set r = set_of_plane(p.y, p.z, p.w, set);
-            lanes wanted = set_load(violated + index, r, false) & ~samples_even(&s, r);
+            const row_set r = rows_of_plane(origin.y, origin.z, origin.x / 64, set);
+            lanes wanted = rows_load(violated + index, r, false) & ~samples_even(&s, r);
             if (lanes_any(wanted)) {
                 if (!have_around) around_make(&s, words, bricks, violated_bricks[n], &a);
                 have_around = true;
-                wanted = set_regular(&s, &a, r, false, wanted, true);
+                wanted = rows_regular(&s, &a, r, false, wanted, true);
             }
-            set_store(wanted, violated + index, r);
+            rows_store(wanted, violated + index, r);
         }
     }
 }
 
 kernel void snap_join(slab s, global ulong *words, global const uint *violated_bricks, global uint *state,
-                      global const ulong *last) {
+                      global const ulong *odd_zeros) {
     local uint shared[1];
     const uint count = state[s.results.head_offset + STATE_VIOLATED_BRICKS];
     words += BRICK_WORDS * (UNIFORM_BRICKS + (ulong)s.snapping.zero_bricks);
@@ -218,7 +219,7 @@ kernel void snap_join(slab s, global ulong *words, global const uint *violated_b
         const uint n = step + OWN_BRICK;
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end; row += BRICK_ITEMS) {
             const ulong index = BRICK_WORDS * (ulong)violated_bricks[n] + row;
-            words[index] |= last[index];
+            words[index] |= odd_zeros[index];
         }
     }
 }

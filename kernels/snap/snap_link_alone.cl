@@ -84,7 +84,8 @@ inline_always void link_load(const slab *s, const brick_around *a, row_set r, bo
 }
 
 /* Of the samples in a set those that are regular points. */
-inline_always lanes set_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted, bool odd) {
+inline_always lanes rows_regular(const slab *s, const brick_around *a, row_set r, bool strided, lanes wanted,
+                                 bool odd) {
     const borders b = borders_of(s, r);
     const lanes border = b.by_axis[0] | b.by_axis[1] | b.by_axis[2];
     link_parts parts = parts_of(s, r, odd, wanted);

@@ -11,26 +11,16 @@ inline_always uint window_layers(const slab *s) {
     return (s->z1 - s->results.word_z + BRICK_PLANES - 1) / BRICK_PLANES;
 }
 
-/* The first sample of a brick of the window. */
-typedef struct brick_place {
-    uint w, y, z;
-} brick_place;
-
-inline_always brick_place brick_place_of(const slab *s, uint number) {
-    brick_place p = {number % s->words_x, number / s->words_x % s->bricks_y * BRICK_ROWS,
-                     s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
-    return p;
-}
-
-/* From the number of a brick of the window to those of the bricks beside it, modulo 2^32: by step plus 1. */
+/* What is added to a brick's index for the bricks beside it, modulo 2^32: element 0 for a step of -1, 1 for none, 2 for
+ * +1. */
 typedef struct brick_steps {
     uint word[3], row[3], layer[3];
 } brick_steps;
 
-/* A step across the window's border stays. */
-inline_always brick_steps brick_steps_of(const slab *s, uint number) {
-    const uint w = number % s->words_x, row = number / s->words_x % s->bricks_y;
-    const uint layer_size = s->bricks_y * s->words_x, layer = number / layer_size;
+/* A step out of the window leads to the brick itself. */
+inline_always brick_steps brick_steps_of(const slab *s, uint brick) {
+    const uint w = brick % s->words_x, row = brick / s->words_x % s->bricks_y;
+    const uint layer_size = s->bricks_y * s->words_x, layer = brick / layer_size;
     brick_steps steps = {{w ? -1u : 0, 0, w + 1 < s->words_x ? 1 : 0},
                          {row ? -s->words_x : 0, 0, row + 1 < s->bricks_y ? s->words_x : 0},
                          {layer ? -layer_size : 0, 0, layer + 1 < window_layers(s) ? layer_size : 0}};

@@ -10,13 +10,13 @@
 #define SETS_OF_PLANES BRICK_PLANES
 #define SETS_STRIDED   1
 
-inline_always row_set set_of_plane(uint y0, uint z0, uint w, uint set) {
+inline_always row_set rows_of_plane(uint y0, uint z0, uint w, uint set) {
     row_set r = {y0, z0 + set, w, LANE_NUMBERS + y0, (lanes)(z0 + set)};
     return r;
 }
 
 /* Of the rows that begin at odd_y and odd_z of the brick. */
-inline_always row_set set_strided(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
+inline_always row_set rows_strided(uint y0, uint z0, uint w, uint set, uint odd_y, uint odd_z) {
     row_set r = {y0 + odd_y, z0 + odd_z, w, (lanes)(0, 2, 4, 6, 0, 2, 4, 6) + (y0 + odd_y),
                  (lanes)(0, 0, 0, 0, 2, 2, 2, 2) + (z0 + odd_z)};
     return r;
@@ -28,25 +28,24 @@ typedef struct brick_around {
     global const ulong *words[3][3][3];
 } brick_around;
 
-inline_always void around_make(const slab *s, global const ulong *words, global const brick_state *bricks, uint number,
+inline_always void around_make(const slab *s, global const ulong *words, global const brick_state *bricks, uint brick,
                                brick_around *a) {
-    const brick_steps steps = brick_steps_of(s, number);
+    const brick_steps steps = brick_steps_of(s, brick);
 #pragma unroll
     for (uint n = 0; n < 27; n++) {
-        const uint other = number + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3];
+        const uint other = brick + steps.layer[n / 9] + steps.row[n / 3 % 3] + steps.word[n % 3];
         a->words[n / 9][n / 3 % 3][n % 3] = brick_words(other, bricks[other].sign, words);
     }
 }
 
 /* Prefetches what a pass reads of a brick, and of the one after it in z, which is read here first. */
-inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *violated,
-                                   uint number) {
-    global const ulong *own = words + BRICK_WORDS * (ulong)number;
+inline_always void around_prefetch(const slab *s, global const ulong *words, global const ulong *violated, uint brick) {
+    global const ulong *own = words + BRICK_WORDS * (ulong)brick;
     const ulong deep = BRICK_WORDS * (ulong)s->bricks_y * s->words_x;
     for (uint line = 0; line < BRICK_WORDS; line += 8) {
         line_prefetch(own + line);
         line_prefetch(zeros_of(s, own) + line);
-        line_prefetch(violated + BRICK_WORDS * (ulong)number + line);
+        line_prefetch(violated + BRICK_WORDS * (ulong)brick + line);
     }
     line_prefetch(own + deep);
     line_prefetch(zeros_of(s, own) + deep);
@@ -85,16 +84,16 @@ inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r
 }
 
 /* Loads a set's words from its brick's; of a strided set from two planes. */
-inline_always lanes set_load(global const ulong *brick, row_set r, bool strided) {
+inline_always lanes rows_load(global const ulong *brick, row_set r, bool strided) {
     if (!strided) return vload8(r.z % BRICK_PLANES, brick);
     const lanes a = vload8(r.z % BRICK_PLANES, brick), b = vload8(r.z % BRICK_PLANES + 2, brick);
     return r.y & 1 ? (lanes)(a.odd, b.odd) : (lanes)(a.even, b.even);
 }
 
-inline_always void set_store(lanes x, global ulong *brick, row_set r) { vstore8(x, r.z % BRICK_PLANES, brick); }
+inline_always void rows_store(lanes x, global ulong *brick, row_set r) { vstore8(x, r.z % BRICK_PLANES, brick); }
 
 /* Adds the bits of a strided set. */
-inline_always void set_add(lanes x, global ulong *brick, row_set r) {
+inline_always void rows_add(lanes x, global ulong *brick, row_set r) {
     for (uint plane = 0; plane < 2; plane++) {
         const uint z = r.z % BRICK_PLANES + 2 * plane;
         const ulong4 half_of = plane ? x.hi : x.lo;

@@ -1,5 +1,6 @@
 /*
- * snap_samples.cl - method snap: what is known of the samples of LANES rows by their place: neighbours, borders, parity
+ * snap_samples.cl - method snap: what is known of the samples of LANES rows by their position: neighbours, borders,
+ * parity
  */
 #ifndef SNAP_SAMPLES_CL
 #define SNAP_SAMPLES_CL

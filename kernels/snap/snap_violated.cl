@@ -14,9 +14,9 @@ typedef struct violated_results {
 } violated_results;
 
 /* Adds a brick to the list, on its first call for this brick. */
-inline_always void violated_brick_enter(uint number, violated_results results) {
-    if (atomic_inc(&results.bricks[number].rows) == 0)
-        results.violated_bricks[atomic_inc(results.violated_brick_count)] = number;
+inline_always void violated_brick_enter(uint brick, violated_results results) {
+    if (atomic_inc(&results.bricks[brick].rows) == 0)
+        results.violated_bricks[atomic_inc(results.violated_brick_count)] = brick;
 }
 
 #endif

@@ -12,8 +12,8 @@
 
 /* A brick's samples with crossings, and which of them are violated. */
 typedef struct violated_list {
-    brick_place p;
-    uint number;
+    grid_index origin;
+    uint brick;
     uint rows; /* bit n: row n has samples in `crossed`, which are not tested yet */
     ulong crossed[BRICK_WORDS];
     ulong violated[BRICK_WORDS];
@@ -21,14 +21,14 @@ typedef struct violated_list {
 
 /* Two lists in turn: a brick is finished after samples of the next one have been asked for, so that its own have
  * arrived. */
-typedef struct violated_room {
+typedef struct violated_work {
     long offsets[LINK_EVEN];
     violated_list lists[2];
     uint brick_count;
-} violated_room;
+} violated_work;
 
 /* Enters the samples of a plane that have a crossing. Of those that cannot be looked at together the violated ones are
- * found at once. */
+ * found here. */
 inline_always void plane_enter(const slab *s, row_set r, lanes crossed_any, const borders *b,
                                global const BITS *samples, violated_list *l) {
     const uint plane = r.z % BRICK_PLANES;
@@ -46,11 +46,11 @@ inline_always void plane_enter(const slab *s, row_set r, lanes crossed_any, cons
 
 inline_always void list_finish(const slab *s, violated_list *l, const long *offsets, global const BITS *samples,
                                violated_results results) {
-    global ulong *out = results.violated + BRICK_WORDS * (ulong)l->number;
+    global ulong *out = results.violated + BRICK_WORDS * (ulong)l->brick;
     for (uint rows = l->rows; rows; rows &= rows - 1) {
-        const uint row = lowest_bit(rows), y = l->p.y + row % BRICK_ROWS, z = l->p.z + row / BRICK_ROWS;
+        const uint row = lowest_bit(rows), y = l->origin.y + row % BRICK_ROWS, z = l->origin.z + row / BRICK_ROWS;
         const uint odd = (s->parity + y + z) & 1;
-        global const BITS *first = samples + row_start(s, y, z) + 64ul * l->p.w;
+        global const BITS *first = samples + row_start(s, y, z) + l->origin.x;
         ulong found = 0;
         for (ulong rest = l->crossed[row]; rest; rest = bits_after16(rest)) {
             const uint bit = lowest_bit(rest);
@@ -65,12 +65,12 @@ inline_always void list_finish(const slab *s, violated_list *l, const long *offs
         any |= of_plane;
         vstore8(of_plane, plane, out);
     }
-    if (lanes_any(any)) violated_brick_enter(l->number, results);
+    if (lanes_any(any)) violated_brick_enter(l->brick, results);
 }
 
-inline_always void violated_begin(const slab *s, violated_room *room) {
-    link_offsets(s, room->offsets);
-    room->brick_count = 0;
+inline_always void violated_begin(const slab *s, violated_work *work) {
+    link_offsets(s, work->offsets);
+    work->brick_count = 0;
 }
 
 /* Whether samples beside a uniform brick may be on another side than its own: those of the bricks around it that are
@@ -93,25 +93,25 @@ inline_always bool uniform_crossed(const brick_around *a, ulong uniform) {
     return differs || lanes_any(differ);
 }
 
-inline_always void violated_find(const slab *s, const brick_around *a, brick_place p, uint number,
+inline_always void violated_find(const slab *s, const brick_around *a, grid_index origin, uint brick,
                                  global const BITS *samples, global const ulong *cells, violated_results results,
-                                 violated_room *room) {
-    violated_list *l = &room->lists[room->brick_count & 1];
-    const uint sign = results.bricks[number].sign;
+                                 violated_work *work) {
+    violated_list *l = &work->lists[work->brick_count & 1];
+    const uint sign = results.bricks[brick].sign;
     if (sign != SIGN_MIXED && !uniform_crossed(a, sign_word(sign))) return;
-    l->p = p, l->number = number, l->rows = 0;
+    l->origin = origin, l->brick = brick, l->rows = 0;
     for (uint set = 0; set < SETS_OF_PLANES; set++) {
-        const row_set r = set_of_plane(p.y, p.z, p.w, set);
+        const row_set r = rows_of_plane(origin.y, origin.z, origin.x / 64, set);
         const borders b = borders_of(s, r);
         plane_enter(s, r, rows_wanted(s, a, r, &b, cells), &b, samples, l);
     }
-    links_prefetch(s, p.w, p.y, p.z, samples);
-    if (room->brick_count++) list_finish(s, &room->lists[room->brick_count & 1], room->offsets, samples, results);
+    links_prefetch(s, origin.x / 64, origin.y, origin.z, samples);
+    if (work->brick_count++) list_finish(s, &work->lists[work->brick_count & 1], work->offsets, samples, results);
 }
 
 inline_always void violated_end(const slab *s, global const BITS *samples, violated_results results,
-                                violated_room *room) {
-    if (room->brick_count) list_finish(s, &room->lists[(room->brick_count - 1) & 1], room->offsets, samples, results);
+                                violated_work *work) {
+    if (work->brick_count) list_finish(s, &work->lists[(work->brick_count - 1) & 1], work->offsets, samples, results);
 }
 
 #endif

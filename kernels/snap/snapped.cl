@@ -10,7 +10,7 @@
 
 #ifdef REAL
 
-/* The edge between a sample and one of its link: what is added to the sample's place in EDGE_CODE. */
+/* The edge between a sample and one of its link: what is added to the sample's EDGE_CODE. */
 inline_always uint link_code(uint n) {
     const int step_x = link_steps[n][0], step_y = link_steps[n][1], step_z = link_steps[n][2];
     const int forth = step_x + 2 * step_y + 4 * step_z > 0 ? 1 : -1; /* to higher sample indices */

@@ -22,7 +22,7 @@ inline_always void snapped_enter(snapped_list *list, uint odd, uint vertex) {
     list->vertex[odd][list->count[odd]++] = (ushort)vertex;
 }
 
-/* Of sixteen samples at these places in the sample buffer the other ends of their edges. */
+/* Of sixteen samples at these indices in the sample buffer the other ends of their edges. */
 inline_always uchar16 snapped16_to(const slab *s, const ulong at[16], bool odd, global const BITS *samples) {
     BITS own[16];
     links16 links;
@@ -40,21 +40,22 @@ inline_always uchar16 snapped16_to(const slab *s, const ulong at[16], bool odd, 
     return nearest < (uchar16)LINK_EVEN ? nearest : (uchar16)1;
 }
 
-/* Adds to the places of the snapped samples the codes of their edges; places: the brick's vertices, as EDGE_CODE has
- * them. row_start: samples before a row of the brick, by bits 7 to 13 of the code. */
+/* Turns the codes of snapped samples, which say "at the sample", into those of the edges on which their vertices lie.
+ * edges: the brick's vertices, as EDGE_CODE has them. row_start: the index of a row's first sample, by bits 7 to 13 of
+ * the code. */
 inline_always void snapped_turn(const slab *s, bool odd, const snapped_list *list, const uint *codes,
-                                const ulong *row_start, global const BITS *samples, uint *places) {
+                                const ulong *row_start, global const BITS *samples, uint *edges) {
     const ushort *vertex = list->vertex[odd];
     for (uint first = 0, count = list->count[odd]; first < count; first += 16) {
         const uint left = min(count - first, 16u);
         ulong at[16];
         uchar to[16];
         for (uint n = 0; n < 16; n++) {
-            const uint place = places[vertex[first + min(n, left - 1)]];
-            at[n] = row_start[place >> 7 & 0x7f] + (place & 0x7f);
+            const uint edge = edges[vertex[first + min(n, left - 1)]];
+            at[n] = row_start[edge >> 7 & 0x7f] + (edge & 0x7f);
         }
         vstore16(snapped16_to(s, at, odd, samples), 0, to);
-        for (uint n = 0; n < left; n++) places[vertex[first + n]] += codes[to[n]];
+        for (uint n = 0; n < left; n++) edges[vertex[first + n]] += codes[to[n]];
     }
 }
 

@@ -97,7 +97,8 @@ inline_always bool bricks_at_border(const slab *s, global const ulong *cells, ui
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
-/* Where a corner is inside, in words of the corners of a face: of which the ends of the diagonal are p and q. */
+/* The corners of 64 faces: a bit is set where that corner of the face is inside, or, in zero_*, a vertex. The diagonal
+ * joins p and q. */
 typedef struct face_corners {
     lanes p, q, u, v, zero_p, zero_q, zero_u, zero_v;
 } face_corners;
@@ -148,8 +149,8 @@ inline_always lanes border_triangles(const cube_rows *r, const border_faces *f) 
     return sum;
 }
 
-/* The entry of a face on the border in the table of cases: of a cube by its parity and the corners inside and those
- * that are vertices of the surface. */
+/* The index in the table of cases of a cube's face on the border, by the cube's parity, its corners inside, and its
+ * corners that are vertices of the surface. */
 inline_always uint border_case(uint odd, uint face, uint inside, uint zeros) {
     const uint low = face < 2 ? 2 : 1, high = face < 4 ? 4 : 2, first = (face & 1) << face / 2;
     uint digits = 0;
@@ -161,15 +162,16 @@ inline_always uint border_case(uint odd, uint face, uint inside, uint zeros) {
     return CAP_FIRST(METHOD_TYPES) + (odd * CAP_FACES + face) * CAP_FACE_CASES + digits;
 }
 
-/* Samples of rows a that are vertices in their own places. */
-inline_always lanes places_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w, global const ulong *cells) {
+/* Samples of rows a at which a vertex lies. */
+inline_always lanes at_samples_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w,
+                                     global const ulong *cells) {
     return r->zero[0] | (r->a0 & border_samples(s, cells, y, z, w));
 }
 
 #endif
 
-/* Vertices owned by the samples of rows a: those on edges that present cubes have, and those in the samples' own
- * places; at_border: whether any of these may be on the border. */
+/* Vertices owned by the samples of rows a: those on edges that present cubes have, and those at
+ * samples; at_border: whether any of these may be on the border. */
 inline_always crossings vertices_owned(const slab *s, const cube_rows *r, uint y, uint z, uint w, bool at_border,
                                        global const ulong *cells) {
     crossings edges = crossings_owned(r);
@@ -177,7 +179,7 @@ inline_always crossings vertices_owned(const slab *s, const cube_rows *r, uint y
     crossings_keep(s, cells, y, z, w, &edges);
 #endif
 #if CLOSED
-    edges.type[PLACE_TYPE] = at_border ? places_owned(s, r, y, z, w, cells) : r->zero[0];
+    edges.type[AT_SAMPLE_TYPE] = at_border ? at_samples_owned(s, r, y, z, w, cells) : r->zero[0];
 #endif
     return edges;
 }

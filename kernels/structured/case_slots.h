@@ -3,15 +3,15 @@
  * compilers
  *
  * The table of vertex numbers has NUMBER_TYPES numbers for each sample, by the type of vertex. A cube needs some of
- * those of its eight samples. They are brought together in 32 slots, from which shuffles take the corners of triangles;
- * what the table of cases has for a corner is a slot. Slots 0 to 15 are in one vector, the others in a second one, of
- * which the upper half has vertices in the places of samples alone.
+ * those of its eight samples. They are brought together in 32 slots, elements of two vectors, from which shuffles take
+ * the corners of triangles; what the table of cases has for a corner is a slot. The upper half of the second vector has
+ * vertices at samples alone.
  */
 #ifndef CASE_SLOTS_H
 #define CASE_SLOTS_H
 
-/* SLOT(slot, x, y, z, type): of the sample at this offset in the cube. Where a sample has eight numbers, the last one
- * is again that of a vertex in the place of the next sample, so that those of two samples come together: */
+/* SLOT(slot, x, y, z, type): of the sample at this offset in the cube. A sample with eight numbers uses seven; the
+ * eighth is once more the number of the vertex at the next sample in x, so that one load brings both: */
 #define SLOTS_OF_EIGHT(SLOT)                                                                                           \
     SLOT(0, 0, 0, 0, 0)                                                                                                \
     SLOT(1, 0, 0, 0, 1)                                                                                                \

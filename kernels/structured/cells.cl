@@ -12,7 +12,7 @@
 
 #if MISSING
 
-/* Present samples of a row, and those whose right-hand neighbour is present too. */
+/* Samples of a row that are present and whose next sample in x is present too. */
 inline_always ulong word_present_pair(global const BITS *samples, global const uchar *blanked, const slab *s, uint y,
                                       uint z, uint w) {
     ulong word = word_present(samples, blanked, s, y, z, w);

@@ -26,10 +26,10 @@ enum { PREFIX_COMPLETE, PREFIX_TILE, PREFIX_VERTICES, PREFIX_TRIANGLES, PREFIX_W
 /* The sums over all tiles before this one. Called by the whole group; shared: PREFIX_WORDS words of local memory.
  * `prefix` holds the sums of tiles `back` to number - 1. Where tile back - 1, `unposted`, has posted nothing in time,
  * it is recounted. With spin_limit 1, which is for tests, the tile before is recounted every time. */
-inline_always uint2 tile_prefix(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
+inline_always uint2 tile_prefix(const slab *s, uint tile_index, global const BITS *samples, global const ulong *cells,
                                 tile_words signs, global uint *tiles, local uint *shared) {
-    bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || number == 0;
-    uint back[2] = {number, number}, prefix[2] = {0, 0};
+    bool leader = get_local_id(0) == 0, complete = false, look = s->tiling.spin_limit > 1 || tile_index == 0;
+    uint back[2] = {tile_index, tile_index}, prefix[2] = {0, 0};
     while (!complete) {
         group_barrier();
         if (leader) {
@@ -89,43 +89,43 @@ inline_always void tile_finish(const slab *s, tile t, uint2 prefix, uint emittin
 }
 
 /* For a tile whose sums are posted: looks back, posts its prefix and completes its bricks. */
-inline_always void tile_complete(const slab *s, uint number, global const BITS *samples, global const ulong *cells,
+inline_always void tile_complete(const slab *s, uint tile_index, global const BITS *samples, global const ulong *cells,
                                  tile_words signs, global uint *active, global uint *head, global uint *tiles,
                                  local uint *shared) {
-    uint2 prefix = tile_prefix(s, number, samples, cells, signs, tiles, shared);
-    uint emitting = tiles[TILE_WORDS * number + TILE_BRICKS];
+    uint2 prefix = tile_prefix(s, tile_index, samples, cells, signs, tiles, shared);
+    uint emitting = tiles[TILE_WORDS * tile_index + TILE_BRICKS];
     if (get_local_id(0) == 0) {
-        uint vertices = prefix.x + scan_own_sum(tiles, number, TILE_VERTICES);
-        uint triangles = prefix.y + scan_own_sum(tiles, number, TILE_TRIANGLES);
-        scan_post_prefix(tiles, number, TILE_VERTICES, vertices);
-        scan_post_prefix(tiles, number, TILE_TRIANGLES, triangles);
-        if (number + 1 == s->tiling.tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
+        uint vertices = prefix.x + scan_own_sum(tiles, tile_index, TILE_VERTICES);
+        uint triangles = prefix.y + scan_own_sum(tiles, tile_index, TILE_TRIANGLES);
+        scan_post_prefix(tiles, tile_index, TILE_VERTICES, vertices);
+        scan_post_prefix(tiles, tile_index, TILE_TRIANGLES, triangles);
+        if (tile_index + 1 == s->tiling.tile_count) head[STATE_VERTICES] = vertices, head[STATE_TRIANGLES] = triangles;
     }
-    tile_finish(s, tile_locate(s, number), prefix, emitting, signs.bricks, active, head, shared);
+    tile_finish(s, tile_locate(s, tile_index), prefix, emitting, signs.bricks, active, head, shared);
 }
 
-/* state: heads and tiles of the slabs, cleared. scratch: per group, room for the halo of a tile. */
+/* state: heads and tiles of the slabs, cleared. scratch: per group, memory for the halo of a tile. */
 kernel void classify(slab s, global const BITS *samples, global const ulong *cells, global brick_range *ranges,
                      global ulong *words, global ulong *offsets, global ushort *triangle_offsets,
                      global brick_state *bricks, global uint *active, global uint *state, global ulong *scratch,
                      uint scratch_words) {
     local uint shared[PREFIX_WORDS];
-    local sign_room for_sign;
-    local count_room for_count;
+    local sign_memory for_sign;
+    local count_memory for_count;
     words += UNIFORM_BRICKS * BRICK_WORDS;
     global uint *head = state + s.results.head_offset, *tiles = state + s.results.tiles_offset;
     tile_words signs = {words, scratch + get_group_id(0) * (size_t)scratch_words, bricks};
     active += s.results.active_offset;
-    uint number = 0, cell_count = 0;
+    uint tile_index = 0, cell_count = 0;
     own_tiles own = {NO_TILE, NO_TILE};
-    while (number < s.tiling.tile_count) {
+    while (tile_index < s.tiling.tile_count) {
         group_barrier();
         if (get_local_id(0) == 0) shared[0] = atomic_inc(&head[STATE_TICKET]);
         group_barrier();
-        number = shared[0];
+        tile_index = shared[0];
         group_barrier();
-        if (number < s.tiling.tile_count) {
-            tile t = tile_locate(&s, number);
+        if (tile_index < s.tiling.tile_count) {
+            tile t = tile_locate(&s, tile_index);
             emit_counts sums = {0, 0, 0};
             for (uint z = ZEROS ? t.z1 : t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_sign(&s, t.y0, t.y1, z, samples, words, bricks, ranges, &head[STATE_NONFINITE], &for_sign);
@@ -133,16 +133,16 @@ kernel void classify(slab s, global const BITS *samples, global const ulong *cel
             group_barrier();
             for (uint z = t.z0; z < t.z1; z += BRICK_PLANES)
                 layer_count(&s, t, z, signs, cells, ranges, offsets, triangle_offsets, &sums,
-                            &tiles[TILE_WORDS * number + TILE_BRICKS], &for_count);
+                            &tiles[TILE_WORDS * tile_index + TILE_BRICKS], &for_count);
             cell_count += sums.cells;
             if (get_local_id(0) == 0) {
-                scan_post_sum(tiles, number, TILE_VERTICES, sums.vertices);
-                scan_post_sum(tiles, number, TILE_TRIANGLES, sums.triangles);
+                scan_post_sum(tiles, tile_index, TILE_VERTICES, sums.vertices);
+                scan_post_sum(tiles, tile_index, TILE_TRIANGLES, sums.triangles);
             }
             if (SETTLES_LATER)
-                own_append(&own, number, tiles);
+                own_append(&own, tile_index, tiles);
             else
-                tile_complete(&s, number, samples, cells, signs, active, head, tiles, shared);
+                tile_complete(&s, tile_index, samples, cells, signs, active, head, tiles, shared);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])

@@ -18,10 +18,10 @@ typedef struct tile {
 
 inline_always tile tile_locate(const slab *s, uint n) {
     tile t;
-    uint groups_y = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows;
-    t.y0 = n % groups_y * s->tiling.tile_rows * BRICK_ROWS;
+    uint tiles_y = (s->bricks_y + s->tiling.tile_rows - 1) / s->tiling.tile_rows;
+    t.y0 = n % tiles_y * s->tiling.tile_rows * BRICK_ROWS;
     t.y1 = min(t.y0 + s->tiling.tile_rows * BRICK_ROWS, s->ny);
-    t.z0 = s->z0 + n / groups_y * s->tiling.tile_layers * BRICK_PLANES;
+    t.z0 = s->z0 + n / tiles_y * s->tiling.tile_layers * BRICK_PLANES;
     t.z1 = min(t.z0 + s->tiling.tile_layers * BRICK_PLANES, s->z1);
     return t;
 }
@@ -31,8 +31,8 @@ typedef struct tile_words {
     global brick_state *bricks;
 } tile_words;
 
-/* Scratch holds the words of the halo. First those of plane z1, eight per brick, up to the bricks that begin at y1, of
- * which only the first row is filled. Then those of row y1, plane after plane. */
+/* Scratch holds the words of the halo. First those of plane z1, eight per brick, also of the bricks that begin at y1,
+ * of which only the first row is filled. Then those of row y1, plane after plane. */
 inline_always ulong halo_plane(const slab *s, tile t, uint y, uint w) {
     return BRICK_ROWS * ((ulong)(y - t.y0) / BRICK_ROWS * s->words_x + w) + y % BRICK_ROWS;
 }
@@ -50,8 +50,8 @@ inline_always bool plane_in_tile(tile t, uint z) { return ZEROS || z < t.z1; }
 inline_always global const ulong *tile_row(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
     if (!plane_in_tile(t, z)) return signs.scratch + halo_plane(s, t, y, w);
     if (!row_in_tile(t, y)) return signs.scratch + halo_row(s, t, z, w);
-    uint number = brick_index(s, y, z, w);
-    return brick_words(number, signs.bricks[number].sign, signs.words) + row_in_brick(s, y, z);
+    uint brick = brick_index(s, y, z, w);
+    return brick_words(brick, signs.bricks[brick].sign, signs.words) + row_in_brick(s, y, z);
 }
 
 inline_always void halo_make(const slab *s, tile t, global const BITS *samples, global const brick_range *ranges,
@@ -83,7 +83,7 @@ inline_always row_counts rows_count(const slab *s, const cube_rows *r, uint y, u
     active &= cells_rows(s, cells, y, z, w);
 #endif
 #if CLOSED
-    edges.type[PLACE_TYPE] = places_owned(s, r, y, z, w, cells);
+    edges.type[AT_SAMPLE_TYPE] = at_samples_owned(s, r, y, z, w, cells);
     border_faces faces = border_faces_of(s, cells, y, z, w);
     if (lanes_any(border_faces_any(&faces))) in_border = border_triangles(r, &faces);
 #endif
@@ -106,8 +106,8 @@ inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global co
         word[n] = zero[n] = 0;
         if (w >= s->words_x || y + n >= s->ny || z >= s->nz) continue;
         if (ZEROS) {
-            uint number = brick_index(s, y + n, z, w), brick_row = row_in_brick(s, y + n, z);
-            global const ulong *words = brick_words(number, signs.bricks[number].sign, signs.words);
+            uint brick = brick_index(s, y + n, z, w), brick_row = row_in_brick(s, y + n, z);
+            global const ulong *words = brick_words(brick, signs.bricks[brick].sign, signs.words);
             word[n] = words[brick_row] & word_valid(s, w), zero[n] = zeros_of(s, words)[brick_row];
         } else {
             word[n] = word_inside(samples, s, y + n, z, w);
@@ -122,10 +122,11 @@ inline_always lanes rows_inside(const slab *s, uint y, uint z, uint w, global co
 #endif
 }
 
-/* The fallback of the scan: one work-item's share of a tile's sums, made without what other groups may not have. */
-inline_always emit_counts tile_recount(const slab *s, uint number, global const BITS *samples,
+/* The fallback of the scan: one work-item's share of a tile's sums, made from samples, as other groups may not have
+ * stored their words yet. */
+inline_always emit_counts tile_recount(const slab *s, uint tile_index, global const BITS *samples,
                                        global const ulong *cells, tile_words signs) {
-    tile t = tile_locate(s, number);
+    tile t = tile_locate(s, tile_index);
     emit_counts sums = {0, 0, 0};
     uint rows = (t.y1 - t.y0 + LANES - 1) / LANES, count = rows * (t.z1 - t.z0) * s->words_x;
     for (uint first = 0; first < count; first += WORK_ITEMS) {

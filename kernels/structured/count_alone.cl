@@ -13,7 +13,8 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
 }
 
 /* Whether any sample that follows a uniform brick in x, y or z is on the other side. Bricks of the same tile that are
- * uniform decide by their sign; in others the words are read. A mixed brick with vertices at samples always may. */
+ * uniform decide by their sign; in others the words are read. With vertices at samples, a mixed brick counts as
+ * different, and its words are not read. */
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words signs, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {
@@ -45,14 +46,14 @@ inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint
  * side, their signs suffice. */
 inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, tile_words signs,
                                global const ulong *cells) {
-    const uint number = brick_index(s, y, z, w), sign = signs.bricks[number].sign;
+    const uint brick = brick_index(s, y, z, w), sign = signs.bricks[brick].sign;
     if (sign == SIGN_MIXED) return true;
 #if CLOSED
     if (sign == SIGN_INSIDE && bricks_at_border(s, cells, y, z, w, 1)) return true;
 #endif
     const uint next_x = w + 1 < s->words_x ? 1 : 0, next_y = y + BRICK_ROWS < t.y1 ? s->words_x : 0;
     const uint next_z = z + BRICK_PLANES < t.z1 ? s->words_x * s->bricks_y : 0;
-    global const brick_state *here = signs.bricks + number, *at_next_z = here + next_z;
+    global const brick_state *here = signs.bricks + brick, *at_next_z = here + next_z;
     const uint differ = (here[next_x].sign ^ sign) | (here[next_y].sign ^ sign) | (here[next_y + next_x].sign ^ sign) |
                         (at_next_z[0].sign ^ sign) | (at_next_z[next_x].sign ^ sign) | (at_next_z[next_y].sign ^ sign) |
                         (at_next_z[next_y + next_x].sign ^ sign);
@@ -60,17 +61,17 @@ inline_always bool brick_emits(const slab *s, tile t, uint y, uint z, uint w, ti
     return (differ || halo) && neighbours_differ(s, t, y, z, w, signs, sign);
 }
 
-/* Where the words are that the cubes of a brick take from one brick in x and y: its planes, and the plane after. */
-typedef struct column {
+/* The sign words that cubes take from one brick: those of its first plane, and of the plane behind its last. */
+typedef struct word_planes {
     global const ulong *first, *after;
     uint stride; /* from plane to plane */
     lanes valid; /* samples that exist */
-} column;
+} word_planes;
 
 /* Outside the grid all words are 0. */
-inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+inline_always word_planes word_planes_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
     global const ulong *none = brick_words(0, SIGN_OUTSIDE, signs.words);
-    column c = {none, none, 0, 0};
+    word_planes c = {none, none, 0, 0};
     if (w >= s->words_x || y >= s->ny) return c;
     const uint end = min(z + BRICK_PLANES, t.z1);
     c.first = tile_row(s, t, y, z, w, signs), c.stride = row_in_tile(t, y) ? BRICK_ROWS : s->words_x;
@@ -79,32 +80,34 @@ inline_always column column_of(const slab *s, tile t, uint y, uint z, uint w, ti
     return c;
 }
 
-/* Columns of the brick, of the brick at higher x, and of the bricks at higher y of both. */
-typedef struct brick_columns {
-    column at, next, next_y, xy;
-} brick_columns;
+/* What the cubes of a brick need: words of the brick, of the brick at higher x, and of the bricks at higher y of both.
+ */
+typedef struct cube_planes {
+    word_planes at, next, next_y, xy;
+} cube_planes;
 
-inline_always brick_columns columns_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
-    brick_columns c = {column_of(s, t, y, z, w, signs), column_of(s, t, y, z, w + 1, signs),
-                       column_of(s, t, y + BRICK_ROWS, z, w, signs), column_of(s, t, y + BRICK_ROWS, z, w + 1, signs)};
+inline_always cube_planes cube_planes_of(const slab *s, tile t, uint y, uint z, uint w, tile_words signs) {
+    cube_planes c = {word_planes_of(s, t, y, z, w, signs), word_planes_of(s, t, y, z, w + 1, signs),
+                     word_planes_of(s, t, y + BRICK_ROWS, z, w, signs),
+                     word_planes_of(s, t, y + BRICK_ROWS, z, w + 1, signs)};
     return c;
 }
 
-inline_always global const ulong *column_row(column c, uint plane, bool after) {
+inline_always global const ulong *plane_first(word_planes c, uint plane, bool after) {
     return after ? c.after : c.first + plane * c.stride;
 }
 
 /* Loads rows y to y + 7 into *a and y + 1 to y + 8 into *b, of a plane of the brick or of the plane after. */
-inline_always void plane_rows(const slab *s, brick_columns c, uint plane, bool after, sample_rows *a, sample_rows *b) {
-    lanes at = vload8(0, column_row(c.at, plane, after)) & c.at.valid;
-    lanes next = vload8(0, column_row(c.next, plane, after)) & c.next.valid;
-    ulong next_y = *column_row(c.next_y, plane, after) & c.next_y.valid.s0;
-    ulong xy = *column_row(c.xy, plane, after) & c.xy.valid.s0;
+inline_always void plane_rows(const slab *s, cube_planes c, uint plane, bool after, sample_rows *a, sample_rows *b) {
+    lanes at = vload8(0, plane_first(c.at, plane, after)) & c.at.valid;
+    lanes next = vload8(0, plane_first(c.next, plane, after)) & c.next.valid;
+    ulong next_y = *plane_first(c.next_y, plane, after) & c.next_y.valid.s0;
+    ulong xy = *plane_first(c.xy, plane, after) & c.xy.valid.s0;
     if (ZEROS) {
-        const lanes zero = vload8(0, zeros_of(s, column_row(c.at, plane, after)));
-        const lanes zero_next = vload8(0, zeros_of(s, column_row(c.next, plane, after)));
-        const ulong zero_y = *zeros_of(s, column_row(c.next_y, plane, after));
-        const ulong zero_xy = *zeros_of(s, column_row(c.xy, plane, after));
+        const lanes zero = vload8(0, zeros_of(s, plane_first(c.at, plane, after)));
+        const lanes zero_next = vload8(0, zeros_of(s, plane_first(c.next, plane, after)));
+        const ulong zero_y = *zeros_of(s, plane_first(c.next_y, plane, after));
+        const ulong zero_xy = *zeros_of(s, plane_first(c.xy, plane, after));
         *a = rows_with_zeros(at, next, zero, zero_next);
         *b = rows_with_zeros(lanes_next_row(at, next_y), lanes_next_row(next, xy), lanes_next_row(zero, zero_y),
                              lanes_next_row(zero_next, zero_xy));
@@ -126,8 +129,8 @@ inline_always lanes lanes_before(lanes x) {
 inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, tile_words signs,
                                global const ulong *cells, global ulong *offsets, global ushort *triangle_offsets,
                                emit_counts *sums) {
-    const uint number = brick_index(s, y, z, w), planes = min((uint)BRICK_PLANES, t.z1 - z);
-    const brick_columns columns = columns_of(s, t, y, z, w, signs);
+    const uint brick = brick_index(s, y, z, w), planes = min((uint)BRICK_PLANES, t.z1 - z);
+    const cube_planes columns = cube_planes_of(s, t, y, z, w, signs);
     uint mask = 0;
     lanes cells_seen = 0, begins = 0; /* vertices, and 32 bits higher triangles, of the planes before */
     sample_rows a, b, c, d;
@@ -140,8 +143,8 @@ inline_always uint brick_count(const slab *s, tile t, uint y, uint z, uint w, ti
         lanes both = rows.vertices | rows.triangles << 32;
         if (!lanes_any(both)) continue;
         lanes before = lanes_before(both) + begins;
-        vstore8(rows.packed + (before & 0xfffffffful), BRICK_PLANES * number + plane, offsets);
-        vstore8(convert_ushort8(before >> 32), BRICK_PLANES * number + plane, triangle_offsets);
+        vstore8(rows.packed + (before & 0xfffffffful), BRICK_PLANES * brick + plane, offsets);
+        vstore8(convert_ushort8(before >> 32), BRICK_PLANES * brick + plane, triangle_offsets);
         begins = (lanes)(before.s7 + both.s7);
         mask |= lanes_nonzero(both) << (BRICK_ROWS * plane);
         cells_seen += rows.cells;
@@ -174,15 +177,15 @@ inline_always bool run_skipped(const slab *s, tile t, uint y, uint z, uint w, ui
 }
 
 /* A group needs no local memory here. */
-typedef struct count_room {
+typedef struct count_memory {
     uint none;
-} count_room;
+} count_memory;
 
 /* Counts the layer that begins with plane z, brick by brick, and adds to *sums. A brick stores the sums before it, from
  * the start of the tile. *emitting: how many bricks of the tile emit something. */
 inline_always void layer_count(const slab *s, tile t, uint z, tile_words signs, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
-                               emit_counts *sums, global uint *emitting, local count_room *room) {
+                               emit_counts *sums, global uint *emitting, local count_memory *memory) {
     global brick_state *first = &signs.bricks[brick_index(s, t.y0, z, 0)];
     first->vertices = sums->vertices, first->triangles = sums->triangles;
     for (uint y = t.y0; y < t.y1; y += BRICK_ROWS)

@@ -7,12 +7,12 @@
 #include "count.cl"
 
 /* A brick of a layer of the tile; bricks are numbered in x, then y. */
-typedef struct brick {
+typedef struct tile_brick {
     uint w, y0;
-} brick;
+} tile_brick;
 
-inline_always brick brick_locate(const slab *s, tile t, uint n) {
-    brick b = {n % s->words_x, t.y0 + n / s->words_x * BRICK_ROWS};
+inline_always tile_brick brick_locate(const slab *s, tile t, uint n) {
+    tile_brick b = {n % s->words_x, t.y0 + n / s->words_x * BRICK_ROWS};
     return b;
 }
 
@@ -53,17 +53,17 @@ typedef struct brick_report {
 } brick_report;
 
 /* What a group needs of local memory. */
-typedef struct count_room {
+typedef struct count_memory {
     row_report rows[WORK_ITEMS];
     brick_report bricks[BRICKS_AT_ONCE];
-} count_room;
+} count_memory;
 
 inline_always void emit_counts_add(emit_counts *sum, emit_counts e) {
     sum->vertices += e.vertices, sum->triangles += e.triangles, sum->cells += e.cells;
 }
 
-/* For brick `number` with rows[0] to [31]: stores where in it the work-item's row begins, and what the brick emits. */
-inline_always void brick_sum(uint number, const local row_report *rows, global ulong *offsets,
+/* For a brick with rows[0] to [31]: stores where in it the work-item's row begins, and what the brick emits. */
+inline_always void brick_sum(uint brick, const local row_report *rows, global ulong *offsets,
                              global ushort *triangle_offsets, local brick_report *out) {
     const uint brick_row = (uint)get_local_id(0) % BRICK_WORDS;
     const row_report own = rows[brick_row];
@@ -77,8 +77,8 @@ inline_always void brick_sum(uint number, const local row_report *rows, global u
         all.rows |= (uint)(row.vertices + row.triangles > 0) << m;
     }
     if (own.e.vertices + own.e.triangles > 0) {
-        offsets[BRICK_WORDS * number + brick_row] = own.packed + before.vertices;
-        triangle_offsets[BRICK_WORDS * number + brick_row] = (ushort)before.triangles;
+        offsets[BRICK_WORDS * brick + brick_row] = own.packed + before.vertices;
+        triangle_offsets[BRICK_WORDS * brick + brick_row] = (ushort)before.triangles;
     }
     if (brick_row == 0) *out = all;
 }
@@ -88,24 +88,24 @@ inline_always void brick_sum(uint number, const local row_report *rows, global u
  * across a barrier, and a work-item without a row counts another one's: some compilers make wrong code otherwise. */
 inline_always void layer_count(const slab *s, tile t, uint z0, tile_words signs, global const ulong *cells,
                                global const brick_range *ranges, global ulong *offsets, global ushort *triangle_offsets,
-                               emit_counts *sums, global uint *emitting, local count_room *room) {
+                               emit_counts *sums, global uint *emitting, local count_memory *memory) {
     const uint count = layer_bricks(s, t);
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
         {
             uint lid = (uint)get_local_id(0), brick_row = lid % BRICK_WORDS;
-            brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
+            tile_brick b = brick_locate(s, t, min(n + lid / BRICK_WORDS, count - 1));
             uint y = b.y0 + brick_row % BRICK_ROWS, z = z0 + brick_row / BRICK_ROWS;
             bool mine = n + lid / BRICK_WORDS < count && y < t.y1 && z < t.z1;
             row_report report = row_count(s, t, mine ? y : b.y0, mine ? z : z0, b.w, signs, cells);
             if (!mine) report.e.vertices = 0, report.e.triangles = 0, report.e.cells = 0;
-            room->rows[lid] = report;
+            memory->rows[lid] = report;
         }
         group_barrier();
         {
             uint own = (uint)get_local_id(0) / BRICK_WORDS;
-            brick b = brick_locate(s, t, min(n + own, count - 1));
-            brick_sum(brick_index(s, b.y0, z0, b.w), room->rows + BRICK_WORDS * own, offsets, triangle_offsets,
-                      &room->bricks[own]);
+            tile_brick b = brick_locate(s, t, min(n + own, count - 1));
+            brick_sum(brick_index(s, b.y0, z0, b.w), memory->rows + BRICK_WORDS * own, offsets, triangle_offsets,
+                      &memory->bricks[own]);
         }
         group_barrier();
         {
@@ -113,13 +113,13 @@ inline_always void layer_count(const slab *s, tile t, uint z0, tile_words signs,
             emit_counts before = *sums;
             for (uint m = 0; m < BRICKS_AT_ONCE; m++) {
                 if (m == own) before = *sums;
-                emit_counts_add(sums, room->bricks[m].e);
+                emit_counts_add(sums, memory->bricks[m].e);
             }
             if (own < BRICKS_AT_ONCE && n + own < count) {
-                brick b = brick_locate(s, t, n + own);
+                tile_brick b = brick_locate(s, t, n + own);
                 global brick_state *state = &signs.bricks[brick_index(s, b.y0, z0, b.w)];
                 state->vertices = before.vertices, state->triangles = before.triangles;
-                state->rows = room->bricks[own].rows;
+                state->rows = memory->bricks[own].rows;
                 if (state->rows) atomic_inc(emitting);
             }
         }

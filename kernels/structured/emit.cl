@@ -29,7 +29,7 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
                  global float *normals, global uint *triangles, global const float *coordinates,
                  global const uchar *blanked) {
     local uint shared[1];
-    local emit_room room;
+    local emit_memory memory;
     brick_work work;
     mesh_buffers mesh = {positions + s.mesh.vertex_offset, normals + s.mesh.vertex_offset,
                          triangles + s.mesh.triangle_offset};
@@ -48,10 +48,10 @@ kernel void emit(slab s, global const BITS *samples, global const ulong *cells, 
         run = shared[0];
         uint end = min(run + run_bricks, active_count);
         for (uint step = run; step < end; step += (WORK_ITEMS + BRICK_WORDS - 1) / BRICK_WORDS) {
-            uint n = step + lid / BRICK_WORDS, number = n < end ? active[n] : 0;
+            uint n = step + lid / BRICK_WORDS, brick = n < end ? active[n] : 0;
             next_prefetch(&s, active + n, active_count - n, k1, samples);
-            bool wanted = n < end && number >= s.mesh.brick_first && number < s.mesh.brick_last;
-            brick_emit(&s, number, wanted, in, k1, cases, mesh, &room, &work);
+            bool wanted = n < end && brick >= s.mesh.brick_first && brick < s.mesh.brick_last;
+            brick_emit(&s, brick, wanted, in, k1, cases, mesh, &memory, &work);
         }
     }
 }

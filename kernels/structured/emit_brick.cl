@@ -44,7 +44,8 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
         global const BITS *from = in.samples + sample;
         work->a[n] = *from;
         work->b[n] = from[step];
-        if (CLOSED) work->b[n] = step ? work->b[n] : (BITS) ~*from; /* another number, to divide by the difference */
+        if (CLOSED)
+            work->b[n] = step ? work->b[n] : (BITS) ~*from; /* any other value, so that the difference is not 0 */
 #if GRID == 2
         global const float *p0 = in.coordinates + (3 * sample + s->arrays.point_offset);
         line_prefetch(p0);
@@ -55,8 +56,8 @@ inline_always void batch_gather(const slab *s, const uint *list, uint count, gri
 
 /* Makes a batch of vertices, BATCH_STEP at a time into private arrays: loops of fixed length, which compilers
  * vectorise. */
-inline_always void batch_store(const slab *s, corner brick, const uint *list, uint count, ulong out, grid_arrays in,
-                               mesh_buffers mesh, brick_work *work) {
+inline_always void batch_store(const slab *s, grid_index origin, const uint *list, uint count, ulong out,
+                               grid_arrays in, mesh_buffers mesh, brick_work *work) {
     for (uint first = 0; first < count; first += BATCH_STEP) {
         float t[BATCH_STEP], positions[3 * BATCH_STEP];
 #if GRID || NORMALS
@@ -64,15 +65,15 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
 #endif
         for (uint n = 0; n < BATCH_STEP; n++) {
             t[n] = crossing(SAMPLE_VALUE(work->a[first + n]), SAMPLE_VALUE(work->b[first + n]), ISOVALUE(&s->test));
-            if (CLOSED) t[n] = is_place(list[first + n]) ? 0 : t[n];
+            if (CLOSED) t[n] = is_at_sample(list[first + n]) ? 0 : t[n];
 #if GRID == 0
-            position_make(s, brick, list[first + n], t[n], positions + 3 * n);
+            position_make(s, origin, list[first + n], t[n], positions + 3 * n);
 #endif
         }
 #if GRID /* items past the end of the list are no valid edges */
         for (uint n = 0; n < left; n++) {
             uint edge = list[first + n];
-            position_between(s, in, brick, edge, work->row_start[edge >> 7 & 0x7f] + (edge & 0x7f),
+            position_between(s, in, origin, edge, work->row_start[edge >> 7 & 0x7f] + (edge & 0x7f),
                              work->step[edge >> 14], t[n], positions + 3 * n);
         }
 #endif
@@ -80,18 +81,18 @@ inline_always void batch_store(const slab *s, corner brick, const uint *list, ui
             *(words16 *)(work->positions + 3 * first + 16 * n) = *(const words16 *)(positions + 16 * n);
 #if NORMALS
         for (uint n = 0; n < left; n++)
-            normal_store(in, s, brick, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
+            normal_store(in, s, origin, list[first + n], t[n], mesh.normals + 3 * (out + first + n));
 #endif
     }
     lines_store(work->positions, 3 * count, mesh.positions + 3 * out);
 }
 
-inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong out, grid_arrays in, mesh_buffers mesh,
-                                 brick_work *work) {
-    brick = edges_corner(brick);
+inline_always void vertices_emit(const slab *s, grid_index origin, uint count, ulong out, grid_arrays in,
+                                 mesh_buffers mesh, brick_work *work) {
+    origin = edges_origin(origin);
     for (uint z = 0; z < BRICK_PLANES + EDGES_BEFORE; z++)
         for (uint y = 0; y <= BRICK_ROWS + EDGES_BEFORE; y++)
-            work->row_start[y | z << 4] = row_start(s, brick.y + y, brick.z + z) + (ulong)(int)brick.x;
+            work->row_start[y | z << 4] = row_start(s, origin.y + y, origin.z + z) + (ulong)(int)origin.x;
     if (ZEROS) {
         snapped_turn(s, false, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
         snapped_turn(s, true, &work->snapped, work->link_codes, work->row_start, in.samples, work->list);
@@ -99,7 +100,7 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
     for (uint first = 0; first < count; first += BATCH_EDGES) {
         uint batch = min(count - first, (uint)BATCH_EDGES);
         batch_gather(s, work->list + first, batch, in, work);
-        batch_store(s, brick, work->list + first, batch, out + first, in, mesh, work);
+        batch_store(s, origin, work->list + first, batch, out + first, in, mesh, work);
     }
 }
 
@@ -107,9 +108,10 @@ inline_always void vertices_emit(const slab *s, corner brick, uint count, ulong 
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Both variants of cubes_list: lists the active cubes of the rows in mask, behind `count` items; returns the number of
- * all. An item is a cube's index in the table of numbers from bit CASE_BITS on, below that its case. With mask
- * registers, patterns of all rows are made first: loading a part of a vector that was just stored would stall. */
+/* Both texts of cubes_list append the active cubes of the rows in `mask` to the list, which has `count` items, and
+ * return how many it has then. An item is a cube's index in the table of numbers from bit CASE_BITS on, below that its
+ * case. With mask registers, patterns of all rows are made first: loading a part of a vector that was just stored would
+ * stall. */
 #ifdef MASK_REGISTERS
 /* Patterns of 64 cubes, from words of their rows in this plane and in the next. */
 inline_always bytes64 row_patterns(const ulong *row, const ulong *next_z) {
@@ -194,11 +196,11 @@ inline_always uint faces_list(const slab *s, uint y, uint z, const ulong at[CAP_
 }
 
 /* Lists the active cubes of each row in mask, and behind them its faces on the border. */
-inline_always uint border_list(const slab *s, corner c, uint mask, row_results k1, brick_work *work) {
+inline_always uint border_list(const slab *s, grid_index origin, uint mask, row_results k1, brick_work *work) {
     ulong at[CAP_FACES][BRICK_ROWS];
     uint count = 0;
     for (uint z = 0; z < BRICK_PLANES; z++) {
-        const border_faces f = border_faces_of(s, k1.cells, c.y, c.z + z, c.x / 64);
+        const border_faces f = border_faces_of(s, k1.cells, origin.y, origin.z + z, origin.x / 64);
         for (uint face = 0; face < CAP_FACES; face++) vstore8(f.at[face], 0, at[face]);
         for (uint rows = mask >> (BRICK_ROWS * z) & ((1u << BRICK_ROWS) - 1); rows; rows &= rows - 1) {
             const uint y = lowest_bit(rows);
@@ -216,8 +218,8 @@ inline_always uint border_list(const slab *s, corner c, uint mask, row_results k
 #ifdef WORD_SHUFFLES
 #define WORDS_AT(words) (*(const words16 *)(words))
 
-/* Brings the numbers of a cube's vertices into their slots. Numbers that lie as far from each other as their slots come
- * by one load. */
+/* Brings the numbers of a cube's vertices into their slots. Numbers that are as far apart in the table as their slots
+ * are loaded together. */
 inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
     uint16 slots[2] = {0, 0};
 #define SLOT(slot, x, y, z, type)                                                                                      \
@@ -236,12 +238,12 @@ inline_always void slots_fill(const uint *number, uint16 *low, uint16 *high) {
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
     uint16 low, high;
     slots_fill(number, &low, &high);
-    *(words16 *)out = words_shuffled(low, high, *(global const bytes16 *)(entry + 1), VERTEX_TYPES > PLACE_TYPE);
-#ifndef MASK_REGISTERS /* few cubes have more, and their shuffles are several */
+    *(words16 *)out = words_shuffled(low, high, *(global const bytes16 *)(entry + 1), VERTEX_TYPES > AT_SAMPLE_TYPE);
+#ifndef MASK_REGISTERS /* few cubes have more than five triangles, and a shuffle takes several instructions here */
     if (entry[0] <= 5) return;
 #endif
     *(words16 *)(out + 15) =
-        words_shuffled(low, high, *(global const bytes16 *)(entry + 16), VERTEX_TYPES > PLACE_TYPE);
+        words_shuffled(low, high, *(global const bytes16 *)(entry + 16), VERTEX_TYPES > AT_SAMPLE_TYPE);
 }
 #else
 inline_always void case_store(const uint *number, global const uchar *entry, uint *out, const brick_work *work) {
@@ -275,79 +277,80 @@ inline_always void triangles_emit(uint count, global const uchar *cases, global 
 /* ------------------------------------------------------------------------------------------------------------ brick */
 
 /* Prefetches the samples of the rows that emit, and of the rows after them in y and z, where their edges end. */
-inline_always void samples_prefetch(const slab *s, corner c, uint mask, global const BITS *samples) {
+inline_always void samples_prefetch(const slab *s, grid_index origin, uint mask, global const BITS *samples) {
     uint before = 0;
 #ifdef REAL
     if (ZEROS) { /* of all rows, and of those before them */
-        links_prefetch(s, c.x / 64, c.y, c.z, samples);
+        links_prefetch(s, origin.x / 64, origin.y, origin.z, samples);
         return;
     }
 #endif
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
+    for (uint n = 0; n < NUMBER_PLANES && origin.z + n < s->nz; n++, mask >>= BRICK_ROWS) {
         uint here = mask & ((1u << BRICK_ROWS) - 1), rows = here | before;
         before = here;
         for (rows |= rows << 1; rows; rows &= rows - 1) {
-            uint y = min(c.y + lowest_bit(rows), s->ny - 1);
-            global const BITS *row = samples + row_start(s, y, c.z + n) + c.x;
+            uint y = min(origin.y + lowest_bit(rows), s->ny - 1);
+            global const BITS *row = samples + row_start(s, y, origin.z + n) + origin.x;
             for (uint sample = 0; sample < 64; sample += 64 / sizeof(BITS)) line_prefetch(row + sample);
         }
     }
 }
 
 /* Prefetches kernel 1's results for a brick. */
-inline_always void brick_prefetch(const slab *s, uint number, corner c, row_results k1) {
-    uint next_y = c.y + BRICK_ROWS < s->ny ? s->words_x : 0,
-         next_z = c.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
+inline_always void brick_prefetch(const slab *s, uint brick, grid_index origin, row_results k1) {
+    uint next_y = origin.y + BRICK_ROWS < s->ny ? s->words_x : 0,
+         next_z = origin.z + BRICK_PLANES < s->nz ? s->words_x * s->bricks_y : 0;
     for (uint line = 0; line < BRICK_WORDS; line += 8) {
-        line_prefetch(k1.words + (ulong)BRICK_WORDS * number + line);
-        line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_y) + line);
-        line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_y) + line);
-        if (ZEROS) line_prefetch(zeros_of(s, k1.words + (ulong)BRICK_WORDS * number + line));
+        line_prefetch(k1.words + (ulong)BRICK_WORDS * brick + line);
+        line_prefetch(k1.words + (ulong)BRICK_WORDS * (brick + next_y) + line);
+        line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (brick + next_y) + line);
+        if (ZEROS) line_prefetch(zeros_of(s, k1.words + (ulong)BRICK_WORDS * brick + line));
     }
-    line_prefetch(k1.bricks + number);
-    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_z));
-    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_z));
-    line_prefetch(k1.words + (ulong)BRICK_WORDS * (number + next_y + next_z));
-    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (number + next_y + next_z));
+    line_prefetch(k1.bricks + brick);
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (brick + next_z));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (brick + next_z));
+    line_prefetch(k1.words + (ulong)BRICK_WORDS * (brick + next_y + next_z));
+    line_prefetch(k1.offsets + (ulong)BRICK_WORDS * (brick + next_y + next_z));
 }
 
 /* Prefetches for the bricks after the first in the list: results of kernel 1 two bricks ahead, samples one ahead. */
 inline_always void next_prefetch(const slab *s, global const uint *active, uint count, row_results k1,
                                  global const BITS *samples) {
-    if (count > 2) brick_prefetch(s, active[2], brick_corner(s, active[2]), k1);
-    if (count > 1) samples_prefetch(s, brick_corner(s, active[1]), k1.bricks[active[1]].rows, samples);
+    if (count > 2) brick_prefetch(s, active[2], brick_origin(s, active[2]), k1);
+    if (count > 1) samples_prefetch(s, brick_origin(s, active[1]), k1.bricks[active[1]].rows, samples);
 }
 
 /* A group needs no local memory here. */
-typedef struct emit_room {
+typedef struct emit_memory {
     uint none;
-} emit_room;
+} emit_memory;
 
-/* Emits brick `number` where it is wanted. */
-inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arrays in, row_results k1,
-                              global const uchar *cases, mesh_buffers mesh, local emit_room *room, brick_work *work) {
+/* Emits a brick where it is wanted. */
+inline_always void brick_emit(const slab *s, uint brick, bool wanted, grid_arrays in, row_results k1,
+                              global const uchar *cases, mesh_buffers mesh, local emit_memory *memory,
+                              brick_work *work) {
     if (!wanted) return;
     brick_signs signs;
-    const corner c = brick_corner(s, number);
-    const brick_state state = k1.bricks[number];
+    const grid_index origin = brick_origin(s, brick);
+    const brick_state state = k1.bricks[brick];
     uint first = s->mesh.vertex_base + state.vertices;
 #if CLOSED
-    const bool at_border = bricks_at_border(s, k1.cells, c.y, c.z, c.x / 64, 1);
+    const bool at_border = bricks_at_border(s, k1.cells, origin.y, origin.z, origin.x / 64, 1);
 #else
     const bool at_border = false;
 #endif
-    signs_load(s, c, number, k1, &signs);
+    signs_load(s, origin, brick, k1, &signs);
     corners_store(&signs, work);
-    crossed_store(s, c, &signs, at_border, k1, work);
-    uint count = edges_list(s, c, state.rows, first, in, work);
+    crossed_store(s, origin, &signs, at_border, k1, work);
+    uint count = edges_list(s, origin, state.rows, first, in, work);
 #ifdef REAL
-    vertices_emit(s, c, count, first - s->mesh.vertex_window, in, mesh, work);
+    vertices_emit(s, origin, count, first - s->mesh.vertex_window, in, mesh, work);
 #endif
-    plane_number(s, c, &signs, at_border, k1, work);
-    next_rows_number(s, c, &signs, at_border, k1, work);
-    column_number(s, c, &signs, at_border, k1, work);
+    plane_number(s, origin, &signs, at_border, k1, work);
+    next_rows_number(s, origin, &signs, at_border, k1, work);
+    column_number(s, origin, &signs, at_border, k1, work);
 #if CLOSED
-    count = at_border ? border_list(s, c, state.rows, k1, work) : cubes_list(s, state.rows, 0, work);
+    count = at_border ? border_list(s, origin, state.rows, k1, work) : cubes_list(s, state.rows, 0, work);
 #else
     count = cubes_list(s, state.rows, 0, work);
 #endif

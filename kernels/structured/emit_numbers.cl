@@ -18,19 +18,21 @@
 #include "../snap/snapped.cl"
 #include "tetrahedra.cl"
 
-#define NUMBER_STEP NUMBER_TYPES(VERTEX_TYPES)
-#define PLACE_TWICE (NUMBER_STEP == 8 && VERTEX_TYPES > PLACE_TYPE)
-#define LIST_EDGES  (BRICK_WORDS * 64 * (CLOSED ? 7 : VERTEX_TYPES)) /* or cubes, and their faces on the border */
-#define LIST_MORE   16                                               /* items that may be stored past its end */
-#define BATCH_EDGES 512
-#define BATCH_CUBES 128
-#define CASE_ITEMS  (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
+#define NUMBER_STEP     NUMBER_TYPES(VERTEX_TYPES)
+#define AT_SAMPLE_TWICE (NUMBER_STEP == 8 && VERTEX_TYPES > AT_SAMPLE_TYPE)
+#define LIST_EDGES      (BRICK_WORDS * 64 * (CLOSED ? 7 : VERTEX_TYPES)) /* or cubes, and their faces on the border */
+#define LIST_MORE       16                                               /* items that may be stored past its end */
+#define BATCH_EDGES     512
+#define BATCH_CUBES     128
+#define CASE_ITEMS      (3 * OF_METHOD(triangles_most)) /* indices that a cube has at the most */
 
 /* Where the table of numbers has that of a vertex of a cube, from the cube's first sample on. */
 #define NUMBER_AT(x, y, z, type)                                                                                       \
-    (NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) - (PLACE_TWICE && (x) && (type) == PLACE_TYPE ? NUMBER_STEP - 1 : 0))
+    (NUMBER_STEP * NUMBER_INDEX(x, y, z) + (type) -                                                                    \
+     (AT_SAMPLE_TWICE && (x) && (type) == AT_SAMPLE_TYPE ? NUMBER_STEP - 1 : 0))
 
-/* Sign words of the brick's rows [0] and of the next brick in y [1], in the brick's planes and the next plane. */
+/* Sign words: rows[0][z] of the brick's eight rows in plane z, rows[1][z] of the rows of the next brick in y. The last
+ * z is the plane behind the brick. */
 typedef struct brick_signs {
     sample_rows rows[2][NUMBER_PLANES];
 } brick_signs;
@@ -41,16 +43,16 @@ typedef struct brick_work {
     ulong active[BRICK_PLANES][BRICK_ROWS];
     ulong corners[NUMBER_PLANES][2 * (NUMBER_ROWS + 1)]; /* of each row its word and the shifted one */
     ulong zero_corners[ZEROS ? NUMBER_PLANES : 1][2 * (NUMBER_ROWS + 1)];
-    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_LANES];
+    uint number[NUMBER_PLANES * NUMBER_ROWS * NUMBER_COLUMNS * NUMBER_STEP + NUMBER_PADDING];
     uint list[LIST_EDGES + LIST_MORE]; /* edges as EDGE_CODE has them; cubes: see cubes_list */
 #ifdef MASK_REGISTERS
     bytes64 patterns[BRICK_WORDS + 1]; /* of cubes, row by row */
     bytes64 zero_patterns[ZEROS ? BRICK_WORDS + 1 : 1];
 #endif
     ushort slot_index[CASE_SLOTS]; /* where a slot's number is in that table, from the cube's first sample on */
-    uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_LANES];
+    uint triangles[BATCH_CUBES * CASE_ITEMS + NUMBER_PADDING];
 #ifdef REAL
-    ulong row_start[8 * 16]; /* samples before a row of the brick, by bits 7 to 13 of EDGE_CODE */
+    ulong row_start[8 * 16]; /* the index of a row's first sample, by bits 7 to 13 of EDGE_CODE */
     long step[64];           /* by its bits 14 to 19 */
     snapped_list snapped;
     uint link_codes[LINK_EVEN];
@@ -77,12 +79,13 @@ inline_always void brick_work_begin(const slab *s, brick_work *work) {
 
 /* The words of a brick that is this one or the next, along x, y and z (next_x, next_y, next_z: 0 or 1); outside the
  * grid all are 0. */
-inline_always global const ulong *words_of_brick(const slab *s, corner c, uint number, uint next_x, uint next_y,
+inline_always global const ulong *words_of_brick(const slab *s, grid_index origin, uint brick, uint next_x, uint next_y,
                                                  uint next_z, row_results k1) {
-    bool exists = c.x + 64 * next_x < s->nx && c.y + BRICK_ROWS * next_y < s->ny && c.z + BRICK_PLANES * next_z < s->nz;
+    bool exists = origin.x + 64 * next_x < s->nx && origin.y + BRICK_ROWS * next_y < s->ny &&
+                  origin.z + BRICK_PLANES * next_z < s->nz;
     if (!exists) return brick_words(0, SIGN_OUTSIDE, k1.words);
-    number += (next_z * s->bricks_y + next_y) * s->words_x + next_x;
-    return brick_words(number, k1.bricks[number].sign, k1.words);
+    brick += (next_z * s->bricks_y + next_y) * s->words_x + next_x;
+    return brick_words(brick, k1.bricks[brick].sign, k1.words);
 }
 
 inline_always sample_rows plane_load(const slab *s, uint z, ulong valid, global const ulong *at,
@@ -93,13 +96,14 @@ inline_always sample_rows plane_load(const slab *s, uint z, ulong valid, global 
     return rows_shifted(vload8(z, at) & valid, vload8(z, next));
 }
 
-inline_always void signs_load(const slab *s, corner c, uint number, row_results k1, brick_signs *signs) {
-    ulong valid = word_valid(s, c.x / 64);
+inline_always void signs_load(const slab *s, grid_index origin, uint brick, row_results k1, brick_signs *signs) {
+    ulong valid = word_valid(s, origin.x / 64);
     for (uint next_y = 0; next_y < 2; next_y++) {
-        global const ulong *at = words_of_brick(s, c, number, 0, next_y, 0, k1);
-        global const ulong *next = words_of_brick(s, c, number, 1, next_y, 0, k1);
+        global const ulong *at = words_of_brick(s, origin, brick, 0, next_y, 0, k1);
+        global const ulong *next = words_of_brick(s, origin, brick, 1, next_y, 0, k1);
         for (uint z = 0; z < BRICK_PLANES; z++) signs->rows[next_y][z] = plane_load(s, z, valid, at, next);
-        at = words_of_brick(s, c, number, 0, next_y, 1, k1), next = words_of_brick(s, c, number, 1, next_y, 1, k1);
+        at = words_of_brick(s, origin, brick, 0, next_y, 1, k1),
+        next = words_of_brick(s, origin, brick, 1, next_y, 1, k1);
         signs->rows[next_y][BRICK_PLANES] = plane_load(s, 0, valid, at, next);
     }
 }
@@ -133,15 +137,15 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
 
 /* Crossed edges and active cubes of the brick itself. at_border: whether a closed surface may end in the brick; else
  * none of its samples, and of those that its cubes have, is on the border. */
-inline_always void crossed_store(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
-                                 brick_work *work) {
+inline_always void crossed_store(const slab *s, grid_index origin, const brick_signs *signs, bool at_border,
+                                 row_results k1, brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
-        cube_rows r = cube_rows_of(s, c.y, c.z + n, c.x / 64, signs->rows[0][n], signs_next_y(signs, n),
+        cube_rows r = cube_rows_of(s, origin.y, origin.z + n, origin.x / 64, signs->rows[0][n], signs_next_y(signs, n),
                                    signs->rows[0][n + 1], signs_next_y(signs, n + 1));
-        crossings edges = vertices_owned(s, &r, c.y, c.z + n, c.x / 64, at_border, k1.cells);
+        crossings edges = vertices_owned(s, &r, origin.y, origin.z + n, origin.x / 64, at_border, k1.cells);
         lanes active = cubes_active(&r);
 #if MISSING
-        active &= cells_rows(s, k1.cells, c.y, c.z + n, c.x / 64);
+        active &= cells_rows(s, k1.cells, origin.y, origin.z + n, origin.x / 64);
 #endif
         if (ZEROS) triangles_count(&r, &active); /* leaves those that emit */
         for (uint type = 0; type < VERTEX_TYPES; type++) vstore8(edges.type[type], 0, work->crossed[n][type]);
@@ -154,10 +158,11 @@ inline_always void crossed_store(const slab *s, corner c, const brick_signs *sig
 /* Whether the first cube of a row of the brick is odd. */
 inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
 
-/* Stores the number of a vertex of a row; one in the place of a sample also beside the sample before. */
-inline_always void number_store(uint *number, uint bit, uint type, uint value) {
-    number[NUMBER_STEP * bit + type] = value;
-    if (PLACE_TWICE && type == PLACE_TYPE) number[bit ? NUMBER_STEP * bit - 1 : PLACE_TYPE] = value;
+/* Stores the number of a vertex of a row. That of a vertex at a sample is stored twice: also as the last number of the
+ * sample before it in x (case_slots.h). */
+inline_always void number_store(uint *row, uint bit, uint type, uint number) {
+    row[NUMBER_STEP * bit + type] = number;
+    if (AT_SAMPLE_TWICE && type == AT_SAMPLE_TYPE) row[bit ? NUMBER_STEP * bit - 1 : AT_SAMPLE_TYPE] = number;
 }
 
 /* Numbers the vertices of a type in a row of another brick. Where there are none, column 64 gets a meaningless number.
@@ -169,25 +174,26 @@ inline_always void neighbour_row_number(uint *number, uint type, ulong crossed, 
     } while (crossed);
 }
 
-/* Lists and numbers the samples of a row that are vertices in their own places; row: the place of the first one, in
+/* Lists and numbers the samples of a row at which a vertex lies; row: the code of the first one, in
  * EDGE_CODE. Snapped samples on no border of the grid get their edges later. */
-inline_always uint places_list(const slab *s, corner c, uint y, uint z, ulong places, uint row, uint first, uint count,
-                               uint *number, grid_arrays in, brick_work *work) {
+inline_always uint at_samples_list(const slab *s, grid_index origin, uint y, uint z, ulong at_samples, uint row,
+                                   uint first, uint count, uint *number, grid_arrays in, brick_work *work) {
 #ifdef REAL
-    const ulong zeros = !ZEROS ? 0 : CLOSED ? work->zero_corners[z][2 * y] & places : places;
-    const ulong inner = samples_inner(s, c.y + y, c.z + z, c.x / 64);
+    const ulong zeros = !ZEROS ? 0 : CLOSED ? work->zero_corners[z][2 * y] & at_samples : at_samples;
+    const ulong inner = samples_inner(s, origin.y + y, origin.z + z, origin.x / 64);
 #endif
-    for (; places; places &= places - 1, count++) {
-        const uint bit = lowest_bit(places);
-        number_store(number, bit, PLACE_TYPE, first + count);
+    for (; at_samples; at_samples &= at_samples - 1, count++) {
+        const uint bit = lowest_bit(at_samples);
+        number_store(number, bit, AT_SAMPLE_TYPE, first + count);
 #ifdef REAL
         work->list[count] = row + bit;
         if (CLOSED && !(zeros >> bit & 1))
-            work->list[count] += EDGE_PLACE;
+            work->list[count] += EDGE_AT_SAMPLE;
         else if (inner >> bit & 1)
             snapped_enter(&work->snapped, (bit ^ row_odd(s, y, z)) & 1, count);
         else
-            work->list[count] += work->link_codes[snapped_to(s, c.x + bit, c.y + y, c.z + z, in.samples)];
+            work->list[count] +=
+                work->link_codes[snapped_to(s, origin.x + bit, origin.y + y, origin.z + z, in.samples)];
 #endif
     }
     return count;
@@ -202,7 +208,8 @@ inline_always void edge_list(const uint codes[2], uint bit, uint *number, uint f
 }
 
 /* Lists and numbers the vertices that the brick owns; returns their count. */
-inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, grid_arrays in, brick_work *work) {
+inline_always uint edges_list(const slab *s, grid_index origin, uint mask, uint first, grid_arrays in,
+                              brick_work *work) {
     uint count = 0;
 #ifdef REAL
     work->snapped.count[0] = work->snapped.count[1] = 0;
@@ -212,8 +219,8 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
         uint row = (y + EDGES_BEFORE) << 7 | (z + EDGES_BEFORE) << 11 | EDGES_BEFORE;
         uint odd = row_odd(s, y, z), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, z);
         ulong any = !ZEROS; /* most rows with snapped samples have no other vertices */
-        loop_unrolled for (uint type = 0; type < PLACE_TYPE && ZEROS; type++) any |= work->crossed[z][type][y];
-        loop_unrolled for (uint type = 0; type < PLACE_TYPE && any; type++) {
+        loop_unrolled for (uint type = 0; type < AT_SAMPLE_TYPE && ZEROS; type++) any |= work->crossed[z][type][y];
+        loop_unrolled for (uint type = 0; type < AT_SAMPLE_TYPE && any; type++) {
             const uint codes[2] = {row + edge_code(type, odd), row + edge_code(type, !odd)};
             ulong crossed = work->crossed[z][type][y];
             const uint end = count + (uint)popcount(crossed);
@@ -223,45 +230,46 @@ inline_always uint edges_list(const slab *s, corner c, uint mask, uint first, gr
                 edge_list(codes, lowest_bit(crossed), number + type, first, count++, work);
             count = end;
         }
-        if (VERTEX_TYPES > PLACE_TYPE)
-            count = places_list(s, c, y, z, work->crossed[z][VERTEX_TYPES - 1][y], row, first, count, number, in, work);
+        if (VERTEX_TYPES > AT_SAMPLE_TYPE)
+            count = at_samples_list(s, origin, y, z, work->crossed[z][VERTEX_TYPES - 1][y], row, first, count, number,
+                                    in, work);
     }
     return count;
 }
 
 /* Numbers the crossings in the next plane that the brick's cubes have. */
-inline_always void plane_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
-                                brick_work *work) {
-    const uint z = c.z + BRICK_PLANES, w = c.x / 64;
+inline_always void plane_number(const slab *s, grid_index origin, const brick_signs *signs, bool at_border,
+                                row_results k1, brick_work *work) {
+    const uint z = origin.z + BRICK_PLANES, w = origin.x / 64;
     const sample_rows none = rows_shifted((lanes)0, (lanes)0);
     if (z >= s->nz) return;
     cube_rows r =
-        cube_rows_of(s, c.y, z, w, signs->rows[0][BRICK_PLANES], signs_next_y(signs, BRICK_PLANES), none, none);
-    crossings edges = vertices_owned(s, &r, c.y, z, w, at_border, k1.cells);
+        cube_rows_of(s, origin.y, z, w, signs->rows[0][BRICK_PLANES], signs_next_y(signs, BRICK_PLANES), none, none);
+    crossings edges = vertices_owned(s, &r, origin.y, z, w, at_border, k1.cells);
     ulong crossed[4][BRICK_ROWS];
     vstore8(edges.type[0], 0, crossed[0]), vstore8(edges.type[1], 0, crossed[1]), vstore8(edges.type[3], 0, crossed[2]);
-    vstore8(edges.type[PLACE_TYPE], 0, crossed[3]);
-    const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[PLACE_TYPE];
+    vstore8(edges.type[AT_SAMPLE_TYPE], 0, crossed[3]);
+    const lanes any = edges.type[0] | edges.type[1] | edges.type[3] | edges.type[AT_SAMPLE_TYPE];
     for (uint rows = lanes_nonzero(any); rows; rows &= rows - 1) {
         uint y = lowest_bit(rows), *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, y, BRICK_PLANES);
-        row_numbers o = row_numbers_of(s, c.y + y, z, w, k1);
+        row_numbers o = row_numbers_of(s, origin.y + y, z, w, k1);
         neighbour_row_number(number, 0, crossed[0][y], number_of(o, 0));
         neighbour_row_number(number, 1, crossed[1][y], number_of(o, 1));
         if (DIAGONALS) neighbour_row_number(number, 3, crossed[2][y], number_of(o, 3));
-        if (VERTEX_TYPES > PLACE_TYPE)
-            neighbour_row_number(number, PLACE_TYPE, crossed[3][y], number_of(o, PLACE_TYPE));
+        if (VERTEX_TYPES > AT_SAMPLE_TYPE)
+            neighbour_row_number(number, AT_SAMPLE_TYPE, crossed[3][y], number_of(o, AT_SAMPLE_TYPE));
     }
 }
 
 /* Numbers the crossings in the next row of each plane. */
-inline_always void next_rows_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
-                                    brick_work *work) {
-    const uint y = c.y + BRICK_ROWS, w = c.x / 64;
+inline_always void next_rows_number(const slab *s, grid_index origin, const brick_signs *signs, bool at_border,
+                                    row_results k1, brick_work *work) {
+    const uint y = origin.y + BRICK_ROWS, w = origin.x / 64;
     const ulong valid = word_valid(s, w), has_x = w + 1 < s->words_x ? valid : valid >> 1;
     if (y >= s->ny) return;
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
+    for (uint n = 0; n < NUMBER_PLANES && origin.z + n < s->nz; n++) {
         const bool last = n == BRICK_PLANES;
-        const ulong even = even_cubes(s, y, c.z + n), has_z = last || c.z + n + 1 >= s->nz ? 0 : ~0ul;
+        const ulong even = even_cubes(s, y, origin.z + n), has_z = last || origin.z + n + 1 >= s->nz ? 0 : ~0ul;
         const sample_rows *here = &signs->rows[1][n], *at_z = last ? here : here + 1;
         const ulong a0 = here->at.s0, a1 = here->next.s0, c0 = at_z->at.s0, c1 = at_z->next.s0;
         const ulong zero = ZEROS ? here->zero_at.s0 : 0, zero_x = ZEROS ? here->zero_next.s0 : 0;
@@ -271,20 +279,21 @@ inline_always void next_rows_number(const slab *s, corner c, const brick_signs *
         xz = DIAGONALS ? xz & has_x & has_z : 0;
 #if MISSING
         crossings edges = {{x, 0, z, 0, xz, 0, 0}};
-        crossings_keep(s, k1.cells, y, c.z + n, w, &edges);
+        crossings_keep(s, k1.cells, y, origin.z + n, w, &edges);
         x = edges.type[0].s0, z = edges.type[2].s0, xz = edges.type[4].s0;
 #endif
-        ulong places = zero;
+        ulong at_samples = zero;
 #if CLOSED
-        if (at_border) places |= a0 & border_samples(s, k1.cells, y, c.z + n, w).s0;
+        if (at_border) at_samples |= a0 & border_samples(s, k1.cells, y, origin.z + n, w).s0;
 #endif
-        if (!(x | z | xz | places)) continue;
-        row_numbers o = row_numbers_of(s, y, c.z + n, w, k1);
+        if (!(x | z | xz | at_samples)) continue;
+        row_numbers o = row_numbers_of(s, y, origin.z + n, w, k1);
         uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, BRICK_ROWS, n);
         neighbour_row_number(number, 0, x, number_of(o, 0));
         neighbour_row_number(number, 2, z, number_of(o, 2));
         if (DIAGONALS) neighbour_row_number(number, 4, xz, number_of(o, 4));
-        if (VERTEX_TYPES > PLACE_TYPE) neighbour_row_number(number, PLACE_TYPE, places, number_of(o, PLACE_TYPE));
+        if (VERTEX_TYPES > AT_SAMPLE_TYPE)
+            neighbour_row_number(number, AT_SAMPLE_TYPE, at_samples, number_of(o, AT_SAMPLE_TYPE));
     }
 }
 
@@ -293,24 +302,24 @@ inline_always lanes next_column(sample_rows rows) { return rows.next >> 63; }
 inline_always lanes next_zeros(sample_rows rows) { return ZEROS ? rows.zero_next >> 63 : (lanes)0; }
 
 /* Numbers the first vertex of one type of the rows from y on in plane z of word w. */
-inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, corner c, row_results k1,
-                                brick_work *work) {
+inline_always void column_store(const slab *s, uint y, uint z, uint w, uint type, uint rows, grid_index origin,
+                                row_results k1, brick_work *work) {
     for (; rows; rows &= rows - 1) {
         uint row = y + lowest_bit(rows);
-        uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, row - c.y, z - c.z);
+        uint *number = work->number + NUMBER_STEP * NUMBER_INDEX(0, row - origin.y, z - origin.z);
         number_store(number, 64, type, number_of(row_numbers_of(s, row, z, w, k1), type));
     }
 }
 
 /* Numbers the crossings in the next column, x = 64. Called last, as the functions above leave meaningless numbers there
  * for rows without crossings. */
-inline_always void column_number(const slab *s, corner c, const brick_signs *signs, bool at_border, row_results k1,
-                                 brick_work *work) {
-    const uint w = c.x / 64 + 1;
+inline_always void column_number(const slab *s, grid_index origin, const brick_signs *signs, bool at_border,
+                                 row_results k1, brick_work *work) {
+    const uint w = origin.x / 64 + 1;
     if (w >= s->words_x) return;
-    for (uint n = 0; n < NUMBER_PLANES && c.z + n < s->nz; n++) {
-        const uint z = c.z + n;
-        const lanes has_y = lanes_select(LANE_NUMBERS + (c.y + 1) < (lanes)s->ny);
+    for (uint n = 0; n < NUMBER_PLANES && origin.z + n < s->nz; n++) {
+        const uint z = origin.z + n;
+        const lanes has_y = lanes_select(LANE_NUMBERS + (origin.y + 1) < (lanes)s->ny);
         const lanes a = next_column(signs->rows[0][n]), b = next_column(signs_next_y(signs, n));
         const lanes za = next_zeros(signs->rows[0][n]), zb = next_zeros(signs_next_y(signs, n));
         crossings edges = {{0, 0, 0, 0, 0, 0, 0}}, next_y = {{0, 0, 0, 0, 0, 0, 0}};
@@ -322,31 +331,32 @@ inline_always void column_number(const slab *s, corner c, const brick_signs *sig
             edges.type[2] = crossed(a, at_z, za, zc);
             if (DIAGONALS)
                 edges.type[5] =
-                    choose(even_rows(s, c.y, z), crossed(a, at_yz, za, zd), crossed(b, at_z, zb, zc)) & has_y;
+                    choose(even_rows(s, origin.y, z), crossed(a, at_yz, za, zd), crossed(b, at_z, zb, zc)) & has_y;
             next_y.type[2] = crossed(next_column(signs->rows[1][n]), next_column(signs->rows[1][n + 1]), next_y.type[6],
                                      next_zeros(signs->rows[1][n + 1]));
         }
 #if MISSING
-        crossings_keep(s, k1.cells, c.y, z, w, &edges);
-        crossings_keep(s, k1.cells, c.y + BRICK_ROWS, z, w, &next_y);
+        crossings_keep(s, k1.cells, origin.y, z, w, &edges);
+        crossings_keep(s, k1.cells, origin.y + BRICK_ROWS, z, w, &next_y);
 #endif
 #if CLOSED
-        edges.type[PLACE_TYPE] = za, next_y.type[PLACE_TYPE] = next_zeros(signs->rows[1][n]);
+        edges.type[AT_SAMPLE_TYPE] = za, next_y.type[AT_SAMPLE_TYPE] = next_zeros(signs->rows[1][n]);
         if (at_border) {
-            edges.type[PLACE_TYPE] |= a & border_samples(s, k1.cells, c.y, z, w);
-            next_y.type[PLACE_TYPE] |=
-                next_column(signs->rows[1][n]) & border_samples(s, k1.cells, c.y + BRICK_ROWS, z, w);
+            edges.type[AT_SAMPLE_TYPE] |= a & border_samples(s, k1.cells, origin.y, z, w);
+            next_y.type[AT_SAMPLE_TYPE] |=
+                next_column(signs->rows[1][n]) & border_samples(s, k1.cells, origin.y + BRICK_ROWS, z, w);
         }
 #endif
-        column_store(s, c.y, z, w, 1, lanes_nonzero(edges.type[1]), c, k1, work);
-        column_store(s, c.y, z, w, 2, lanes_nonzero(edges.type[2]), c, k1, work);
-        column_store(s, c.y, z, w, 5, lanes_nonzero(edges.type[5]), c, k1, work);
-        if (VERTEX_TYPES > PLACE_TYPE)
-            column_store(s, c.y, z, w, PLACE_TYPE, lanes_nonzero(edges.type[PLACE_TYPE]), c, k1, work);
-        if (c.y + BRICK_ROWS >= s->ny) continue;
-        if (next_y.type[2].s0) column_store(s, c.y + BRICK_ROWS, z, w, 2, 1, c, k1, work);
-        if (VERTEX_TYPES > PLACE_TYPE && next_y.type[PLACE_TYPE].s0)
-            column_store(s, c.y + BRICK_ROWS, z, w, PLACE_TYPE, 1, c, k1, work);
+        column_store(s, origin.y, z, w, 1, lanes_nonzero(edges.type[1]), origin, k1, work);
+        column_store(s, origin.y, z, w, 2, lanes_nonzero(edges.type[2]), origin, k1, work);
+        column_store(s, origin.y, z, w, 5, lanes_nonzero(edges.type[5]), origin, k1, work);
+        if (VERTEX_TYPES > AT_SAMPLE_TYPE)
+            column_store(s, origin.y, z, w, AT_SAMPLE_TYPE, lanes_nonzero(edges.type[AT_SAMPLE_TYPE]), origin, k1,
+                         work);
+        if (origin.y + BRICK_ROWS >= s->ny) continue;
+        if (next_y.type[2].s0) column_store(s, origin.y + BRICK_ROWS, z, w, 2, 1, origin, k1, work);
+        if (VERTEX_TYPES > AT_SAMPLE_TYPE && next_y.type[AT_SAMPLE_TYPE].s0)
+            column_store(s, origin.y + BRICK_ROWS, z, w, AT_SAMPLE_TYPE, 1, origin, k1, work);
     }
 }
 

@@ -32,9 +32,9 @@ inline_always row_numbers table_numbers(const local row_table *table, uint n) {
 }
 
 /* What a group needs of local memory. */
-typedef struct emit_room {
+typedef struct emit_memory {
     row_table tables[WORK_ITEMS / BRICK_WORDS];
-} emit_room;
+} emit_memory;
 
 /* A work-item needs no private memory here. */
 typedef struct brick_work {
@@ -50,12 +50,12 @@ inline_always void next_prefetch(const slab *s, global const uint *active, uint 
 /* The sign word of a row, and the same shifted; 0 outside the grid. */
 inline_always sample_rows row_of(const slab *s, uint y, uint z, uint w, row_results k1) {
     if (y >= s->ny || z >= s->nz) return rows_shifted(0, 0);
-    uint number = brick_index(s, y, z, w), brick_row = row_in_brick(s, y, z);
-    global const ulong *words = brick_words(number, k1.bricks[number].sign, k1.words);
+    uint brick = brick_index(s, y, z, w), brick_row = row_in_brick(s, y, z);
+    global const ulong *words = brick_words(brick, k1.bricks[brick].sign, k1.words);
     ulong at = words[brick_row] & word_valid(s, w), next = 0, zero = 0, zero_next = 0;
     if (ZEROS) zero = zeros_of(s, words)[brick_row];
     if (w + 1 < s->words_x) {
-        words = brick_words(number + 1, k1.bricks[number + 1].sign, k1.words);
+        words = brick_words(brick + 1, k1.bricks[brick + 1].sign, k1.words);
         next = words[brick_row];
         if (ZEROS) zero_next = zeros_of(s, words)[brick_row];
     }
@@ -75,10 +75,10 @@ inline_always cube_rows row_cubes(const slab *s, uint y, uint z, uint w, bool ne
 
 /* Enters row n of a brick's table, where it is in the grid. In rows beyond the brick, only edges that its cubes have
  * are correct. */
-inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1, local row_table *table) {
-    const uint y = brick.y + n % TABLE_ROWS_Y, z = brick.z + n / TABLE_ROWS_Y, w = brick.x / 64;
+inline_always void row_enter(const slab *s, grid_index origin, uint n, row_results k1, local row_table *table) {
+    const uint y = origin.y + n % TABLE_ROWS_Y, z = origin.z + n / TABLE_ROWS_Y, w = origin.x / 64;
     if (y >= s->ny || z >= s->nz) return;
-    cube_rows r = row_cubes(s, y, z, w, y < brick.y + BRICK_ROWS, z < brick.z + BRICK_PLANES, k1);
+    cube_rows r = row_cubes(s, y, z, w, y < origin.y + BRICK_ROWS, z < origin.z + BRICK_PLANES, k1);
     crossings edges = vertices_owned(s, &r, y, z, w, true, k1.cells);
     const row_numbers o = row_numbers_of(s, y, z, w, k1);
 #pragma unroll
@@ -87,11 +87,11 @@ inline_always void row_enter(const slab *s, corner brick, uint n, row_results k1
 }
 
 /* All rows of a brick, by the work-items that share it. */
-inline_always void table_make(const slab *s, corner brick, row_results k1, local row_table *table) {
+inline_always void table_make(const slab *s, grid_index origin, row_results k1, local row_table *table) {
 #pragma unroll 1
     for (uint first = 0; first < TABLE_ROWS; first += BRICK_WORDS) {
         uint n = first + (uint)get_local_id(0) % BRICK_WORDS;
-        if (n < TABLE_ROWS) row_enter(s, brick, n, k1, table);
+        if (n < TABLE_ROWS) row_enter(s, origin, n, k1, table);
     }
 }
 
@@ -100,34 +100,34 @@ inline_always void table_make(const slab *s, corner brick, row_results k1, local
 #ifdef REAL
 
 /* The edge of the vertex of a type at a bit of the row (y, z), whose first sample is at `row` in EDGE_CODE. */
-inline_always uint edge_at(const slab *s, corner brick, uint y, uint z, uint type, uint bit, uint row, ulong even,
+inline_always uint edge_at(const slab *s, grid_index origin, uint y, uint z, uint type, uint bit, uint row, ulong even,
                            ulong zeros, grid_arrays in) {
     const bool is_zero = CLOSED ? zeros >> bit & 1 : 1;
-    if (ZEROS && type == PLACE_TYPE && is_zero)
-        return row + bit + link_code(snapped_to(s, brick.x + bit, y, z, in.samples));
-    return (CLOSED && type == PLACE_TYPE ? EDGE_PLACE : edge_code(type, !(even >> bit & 1))) + row + bit;
+    if (ZEROS && type == AT_SAMPLE_TYPE && is_zero)
+        return row + bit + link_code(snapped_to(s, origin.x + bit, y, z, in.samples));
+    return (CLOSED && type == AT_SAMPLE_TYPE ? EDGE_AT_SAMPLE : edge_code(type, !(even >> bit & 1))) + row + bit;
 }
 
 /* All vertices of row n of a table, in order. */
-inline_always void row_vertices(const slab *s, corner brick, uint y, uint z, uint n, grid_arrays in, row_results k1,
-                                const local row_table *table, mesh_buffers mesh) {
+inline_always void row_vertices(const slab *s, grid_index origin, uint y, uint z, uint n, grid_arrays in,
+                                row_results k1, const local row_table *table, mesh_buffers mesh) {
     const ulong even = even_cubes(s, y, z);
-    const corner first = edges_corner(brick);
+    const grid_index first = edges_origin(origin);
     const uint row = (y - first.y) << 7 | (z - first.z) << 11 | EDGES_BEFORE;
-    const ulong zeros = ZEROS && CLOSED ? row_of(s, y, z, brick.x / 64, k1).zero_at : 0;
+    const ulong zeros = ZEROS && CLOSED ? row_of(s, y, z, origin.x / 64, k1).zero_at : 0;
     ulong out = (uint)(number_of(table_numbers(table, n), 0) - s->mesh.vertex_window);
 #pragma unroll 1
     for (uint type = 0; type < VERTEX_TYPES; type++) {
 #pragma unroll 1
         for (ulong crossed = table->crossed[type][n]; crossed; crossed &= crossed - 1, out++) {
             uint bit = lowest_bit(crossed);
-            uint edge = edge_at(s, brick, y, z, type, bit, row, even, zeros, in);
+            uint edge = edge_at(s, origin, y, z, type, bit, row, even, zeros, in);
             ulong from =
                 row_start(s, first.y + (edge >> 7 & 0xf), first.z + (edge >> 11 & 7)) + (uint)(first.x + (edge & 0x7f));
             long step = edge_step(s, edge);
             BITS a = in.samples[from], b = in.samples[from + step];
             float position[3], t = 0;
-            if (!is_place(edge)) t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
+            if (!is_at_sample(edge)) t = crossing(SAMPLE_VALUE(a), SAMPLE_VALUE(b), ISOVALUE(&s->test));
 #if GRID
             position_between(s, in, first, edge, from, step, t, position);
 #else
@@ -211,29 +211,30 @@ inline_always void row_triangles(const slab *s, uint y, uint z, uint w, uint n, 
 
 /* ------------------------------------------------------------------------------------------------------------ brick */
 
-/* Emits a row of brick `number`. */
-inline_always void row_emit(const slab *s, uint number, uint brick_row, grid_arrays in, row_results k1,
+/* Emits a row of a brick. */
+inline_always void row_emit(const slab *s, uint brick, uint brick_row, grid_arrays in, row_results k1,
                             global const uchar *cases, mesh_buffers mesh, const local row_table *table) {
-    const corner brick = brick_corner(s, number);
-    const uint y = brick.y + brick_row % BRICK_ROWS, z = brick.z + brick_row / BRICK_ROWS;
+    const grid_index origin = brick_origin(s, brick);
+    const uint y = origin.y + brick_row % BRICK_ROWS, z = origin.z + brick_row / BRICK_ROWS;
     const uint n = brick_row % BRICK_ROWS + TABLE_ROWS_Y * (brick_row / BRICK_ROWS);
-    const uint before = k1.bricks[number].triangles + k1.triangle_offsets[BRICK_WORDS * number + brick_row];
+    const uint before = k1.bricks[brick].triangles + k1.triangle_offsets[BRICK_WORDS * brick + brick_row];
 #ifdef REAL
-    row_vertices(s, brick, y, z, n, in, k1, table, mesh);
+    row_vertices(s, origin, y, z, n, in, k1, table, mesh);
 #endif
-    row_triangles(s, y, z, brick.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
+    row_triangles(s, y, z, origin.x / 64, n, before - s->mesh.triangle_window, k1, table, cases, mesh);
 }
 
-/* Emits brick `number`, which 32 work-items share, where it is wanted. Called by the whole group. No variable lives
+/* Emits a brick, which 32 work-items share, where it is wanted. Called by the whole group. No variable lives
  * across its barriers, as some compilers make wrong code for that. */
-inline_always void brick_emit(const slab *s, uint number, bool wanted, grid_arrays in, row_results k1,
-                              global const uchar *cases, mesh_buffers mesh, local emit_room *room, brick_work *work) {
-    local row_table *table = &room->tables[get_local_id(0) / BRICK_WORDS];
+inline_always void brick_emit(const slab *s, uint brick, bool wanted, grid_arrays in, row_results k1,
+                              global const uchar *cases, mesh_buffers mesh, local emit_memory *memory,
+                              brick_work *work) {
+    local row_table *table = &memory->tables[get_local_id(0) / BRICK_WORDS];
     group_barrier();
-    if (wanted) table_make(s, brick_corner(s, number), k1, table);
+    if (wanted) table_make(s, brick_origin(s, brick), k1, table);
     group_barrier();
     uint brick_row = (uint)get_local_id(0) % BRICK_WORDS;
-    if (wanted && k1.bricks[number].rows >> brick_row & 1) row_emit(s, number, brick_row, in, k1, cases, mesh, table);
+    if (wanted && k1.bricks[brick].rows >> brick_row & 1) row_emit(s, brick, brick_row, in, k1, cases, mesh, table);
 }
 
 #endif

@@ -24,21 +24,15 @@ typedef struct row_results {
     global const brick_state *bricks;
 } row_results;
 
-inline_always corner brick_corner(const slab *s, uint number) {
-    corner c = {number % s->words_x * 64, number / s->words_x % s->bricks_y * BRICK_ROWS,
-                s->results.word_z + number / s->words_x / s->bricks_y * BRICK_PLANES};
-    return c;
-}
-
 /* From where the edges of a brick's vertices are counted; below the grid's first sample it wraps. */
-inline_always corner edges_corner(corner brick) {
-    corner c = {brick.x - EDGES_BEFORE, brick.y - EDGES_BEFORE, brick.z - EDGES_BEFORE};
-    return c;
+inline_always grid_index edges_origin(grid_index brick) {
+    grid_index origin = {brick.x - EDGES_BEFORE, brick.y - EDGES_BEFORE, brick.z - EDGES_BEFORE};
+    return origin;
 }
 
 /* The number of the first vertex of a brick, in this slab or the next. */
-inline_always uint brick_first_vertex(const slab *s, uint z, uint number, row_results k1) {
-    return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[number].vertices;
+inline_always uint brick_first_vertex(const slab *s, uint z, uint brick, row_results k1) {
+    return (z < s->z1 ? s->mesh.vertex_base : s->mesh.vertex_base_next) + k1.bricks[brick].vertices;
 }
 
 /* Where the numbers of the vertices that a row of 64 samples owns begin. */
@@ -48,8 +42,8 @@ typedef struct row_numbers {
 } row_numbers;
 
 inline_always row_numbers row_numbers_of(const slab *s, uint y, uint z, uint w, row_results k1) {
-    uint number = brick_index(s, y, z, w);
-    row_numbers o = {brick_first_vertex(s, z, number, k1), k1.offsets[BRICK_WORDS * number + row_in_brick(s, y, z)]};
+    uint brick = brick_index(s, y, z, w);
+    row_numbers o = {brick_first_vertex(s, z, brick, k1), k1.offsets[BRICK_WORDS * brick + row_in_brick(s, y, z)]};
     return o;
 }
 
@@ -73,9 +67,9 @@ inline_always uint edge_code(uint type, bool odd) {
     }
 }
 
-/* A vertex in the place of a sample, of a closed surface: an edge without length. */
-#define EDGE_PLACE     EDGE_CODE(0, 0, 0, 0, 0, 0)
-#define is_place(edge) (CLOSED && ((edge) ^ EDGE_PLACE) >> 14 == 0)
+/* A vertex at a sample, of a closed surface: an edge without length. */
+#define EDGE_AT_SAMPLE     EDGE_CODE(0, 0, 0, 0, 0, 0)
+#define is_at_sample(edge) (CLOSED && ((edge) ^ EDGE_AT_SAMPLE) >> 14 == 0)
 
 /* The entry of a cube in the table of cases: its parity, corners inside, and corners that are vertices. */
 inline_always global const uchar *case_of(global const uchar *cases, uint odd, uint inside, uint zeros) {

@@ -21,9 +21,9 @@ inline_always uint sign_known(const slab *s, uint y, uint z, uint w, global cons
                                    : SIGN_MIXED;
 }
 
-inline_always void brick_sign_store(uint number, uint sign, global brick_state *bricks) {
+inline_always void brick_sign_store(uint brick, uint sign, global brick_state *bricks) {
     brick_state b = {0, 0, 0, sign};
-    bricks[number] = b;
+    bricks[brick] = b;
 }
 
 #if WORK_ITEMS == 1

@@ -81,18 +81,18 @@ inline_always void row_prefetch(const slab *s, uint y, uint z, uint w, uint coun
 #define BLOCK_BRICKS   64
 #define PREFETCH_BYTES 4096
 
-/* Bricks visited together: `rows` rows of `count` bricks, at most BLOCK_BRICKS in all. Each plane is read row after
+/* Bricks read together: `rows` rows of `count` bricks, at most BLOCK_BRICKS in all. Each plane is read row after
  * row. Where `count` bricks make whole rows of the grid, that is one long run, which memory serves faster than short
  * ones. */
-typedef struct visit_block {
+typedef struct read_block {
     uint y, z, w; /* of the first word */
     uint rows, count;
-} visit_block;
+} read_block;
 
 /* Makes words, ranges and signs of a block on the first visit. Prefetches what is read PREFETCH_BYTES later, also in
  * the next plane or the next block, as hardware prefetch stops at page ends. */
-inline_always void block_visit(const slab *s, visit_block p, global const BITS *samples, global ulong *words,
-                               global brick_state *bricks, global brick_range *ranges, global uint *nonfinite) {
+inline_always void block_read(const slab *s, read_block p, global const BITS *samples, global ulong *words,
+                              global brick_state *bricks, global brick_range *ranges, global uint *nonfinite) {
     const uint rows = p.rows * BRICK_ROWS, rows_ahead = max(PREFETCH_BYTES / (64 * (uint)sizeof(BITS) * p.count), 1u);
     ulong word[BLOCK_BRICKS][BRICK_WORDS];
     line_keys low[BLOCK_BRICKS], high[BLOCK_BRICKS];
@@ -115,18 +115,18 @@ inline_always void block_visit(const slab *s, visit_block p, global const BITS *
         }
     }
     for (uint n = 0; n < p.rows * p.count; n++) {
-        uint w = p.w + n % p.count, number = brick_index(s, p.y + n / p.count * BRICK_ROWS, p.z, w);
+        uint w = p.w + n % p.count, brick = brick_index(s, p.y + n / p.count * BRICK_ROWS, p.z, w);
         brick_range range = line_range(low[n], high[n]);
         uint sign = range_sign(&s->test, range);
-        ranges[s->results.range_offset + number] = range;
-        brick_sign_store(number, sign, bricks);
+        ranges[s->results.range_offset + brick] = range;
+        brick_sign_store(brick, sign, bricks);
 #if FLOATING && !MISSING
         if (!range_finite(range)) atomic_or(nonfinite, 1u);
 #endif
         if (sign != SIGN_MIXED) continue;
         ulong valid = word_valid(s, w);
         for (uint brick_row = 0; brick_row < BRICK_WORDS; brick_row++)
-            words[(ulong)BRICK_WORDS * number + brick_row] = word[n][brick_row] & valid;
+            words[(ulong)BRICK_WORDS * brick + brick_row] = word[n][brick_row] & valid;
     }
 }
 
@@ -188,14 +188,14 @@ inline_always void layer_sign_again(const slab *s, uint y0, uint y1, uint z, glo
 }
 
 /* A group needs no local memory here. */
-typedef struct sign_room {
+typedef struct sign_memory {
     uint none;
-} sign_room;
+} sign_memory;
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, global uint *nonfinite,
-                              local sign_room *room) {
+                              local sign_memory *memory) {
     if (s->results.ranges_known) {
         layer_sign_again(s, y0, y1, z, samples, words, bricks, ranges);
         return;
@@ -203,8 +203,8 @@ inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global co
     const uint most = min(s->words_x, (uint)BLOCK_BRICKS), step = BLOCK_BRICKS / most * BRICK_ROWS;
     for (uint y = y0; y < y1; y += step)
         for (uint w = 0; w < s->words_x; w += most) {
-            visit_block p = {y, z, w, (min(step, y1 - y) + BRICK_ROWS - 1) / BRICK_ROWS, min(most, s->words_x - w)};
-            block_visit(s, p, samples, words, bricks, ranges, nonfinite);
+            read_block p = {y, z, w, (min(step, y1 - y) + BRICK_ROWS - 1) / BRICK_ROWS, min(most, s->words_x - w)};
+            block_read(s, p, samples, words, bricks, ranges, nonfinite);
         }
 }
 

@@ -10,8 +10,8 @@
 #define ROW_PARTS      4 /* of 16 samples */
 
 /* A work-item's part of a brick's words and range. */
-inline_always void part_visit(const slab *s, uint y, uint z, uint part, global const BITS *samples, global ulong *word,
-                              local brick_range *range) {
+inline_always void part_read(const slab *s, uint y, uint z, uint part, global const BITS *samples, global ulong *word,
+                             local brick_range *range) {
     const uint count = 16 * part < s->nx ? min(s->nx - 16 * part, 16u) : 0;
     global const BITS *row = samples + row_start(s, y, z) + 16 * part;
     BITS low = (BITS) ~(BITS)0, high = 0;
@@ -29,45 +29,45 @@ inline_always void part_visit(const slab *s, uint y, uint z, uint part, global c
 }
 
 /* What a group needs of local memory. */
-typedef struct sign_room {
+typedef struct sign_memory {
     brick_range found[BRICKS_AT_ONCE];
-} sign_room;
+} sign_memory;
 
 /* The bricks of rows y0 <= y < y1 in the layer that begins with plane z. No variable lives across a barrier, as some
  * compilers make wrong code for that. */
 inline_always void layer_sign(const slab *s, uint y0, uint y1, uint z, global const BITS *samples, global ulong *words,
                               global brick_state *bricks, global brick_range *ranges, global uint *nonfinite,
-                              local sign_room *room) {
-    local brick_range *found = room->found;
+                              local sign_memory *memory) {
+    local brick_range *found = memory->found;
     const uint first = brick_index(s, y0, z, 0);
     const uint count = (y1 - y0 + BRICK_ROWS - 1) / BRICK_ROWS * s->words_x;
     for (uint n = 0; n < count; n += BRICKS_AT_ONCE) {
         {
-            uint lid = (uint)get_local_id(0), number = first + min(n + lid, count - 1);
+            uint lid = (uint)get_local_id(0), brick = first + min(n + lid, count - 1);
             if (lid < BRICKS_AT_ONCE) {
-                found[lid].low = s->results.ranges_known ? ranges[s->results.range_offset + number].low : ~0u;
-                found[lid].high = s->results.ranges_known ? ranges[s->results.range_offset + number].high : 0;
+                found[lid].low = s->results.ranges_known ? ranges[s->results.range_offset + brick].low : ~0u;
+                found[lid].high = s->results.ranges_known ? ranges[s->results.range_offset + brick].high : 0;
             }
         }
         group_barrier();
         for (uint step = 0; step < ROW_PARTS; step++) {
             uint item = step * WORK_ITEMS + (uint)get_local_id(0), b = item / (ROW_PARTS * BRICK_WORDS);
-            uint brick_row = item / ROW_PARTS % BRICK_WORDS, number = n + b, w = number % s->words_x;
-            uint y = y0 + number / s->words_x * BRICK_ROWS + brick_row % BRICK_ROWS, zp = z + brick_row / BRICK_ROWS;
-            bool wanted = number < count && y < s->ny && zp < s->z1;
+            uint brick_row = item / ROW_PARTS % BRICK_WORDS, brick = n + b, w = brick % s->words_x;
+            uint y = y0 + brick / s->words_x * BRICK_ROWS + brick_row % BRICK_ROWS, zp = z + brick_row / BRICK_ROWS;
+            bool wanted = brick < count && y < s->ny && zp < s->z1;
             if (wanted && s->results.ranges_known) wanted = range_sign(&s->test, found[b]) == SIGN_MIXED;
             if (wanted)
-                part_visit(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
-                           words + (ulong)BRICK_WORDS * (first + number) + brick_row, &found[b]);
+                part_read(s, y, zp, ROW_PARTS * w + item % ROW_PARTS, samples,
+                          words + (ulong)BRICK_WORDS * (first + brick) + brick_row, &found[b]);
         }
         group_barrier();
         {
-            uint lid = (uint)get_local_id(0), number = first + n + lid;
+            uint lid = (uint)get_local_id(0), brick = first + n + lid;
             if (lid < BRICKS_AT_ONCE && n + lid < count) {
                 brick_range range = found[lid];
-                brick_sign_store(number, range_sign(&s->test, range), bricks);
+                brick_sign_store(brick, range_sign(&s->test, range), bricks);
                 if (!s->results.ranges_known)
-                    ranges[s->results.range_offset + number] = range; /* a known one: other groups read it */
+                    ranges[s->results.range_offset + brick] = range; /* not stored again: others may be reading */
 #if FLOATING && !MISSING
                 if (!range_finite(range)) atomic_or(nonfinite, 1u);
 #endif

@@ -89,16 +89,16 @@ enum { METHODS(METHOD_CONSTANTS) };
 #define DIAGONALS    (METHOD_TYPES > 3) /* whether edges across faces have vertices */
 #define ZEROS        (METHOD_TYPES > 6) /* whether the surface can go through samples, which are vertices then */
 
-/* Vertices on edges have the first types. The last one is of vertices in samples' own places: those that the surface
- * goes through, and of closed surfaces inside samples of the border. */
-#define PLACE_TYPE   (DIAGONALS ? 6 : 3)
-#define VERTEX_TYPES (PLACE_TYPE + (ZEROS || CLOSED ? 1 : 0))
+/* Vertices on edges have the first types. The last type is that of vertices at samples: at those that the surface goes
+ * through, and, of closed surfaces, at inside samples of the border. */
+#define AT_SAMPLE_TYPE (DIAGONALS ? 6 : 3)
+#define VERTEX_TYPES   (AT_SAMPLE_TYPE + (ZEROS || CLOSED ? 1 : 0))
 
-/* Edges of vertices may begin as many samples before the brick that owns them: a sample's vertex is on any of its
- * edges. */
+/* How many samples before its brick an edge may begin, along each axis: the vertex of a snapped sample lies on any of
+ * the sample's edges. */
 #define EDGES_BEFORE (ZEROS ? 1u : 0u)
 
-/* Vertices owned by the samples of rows a: edges whose ends differ, where both are in the grid; samples. */
+/* The vertices that the samples of rows a own: on crossed edges whose ends are both in the grid, and at samples. */
 typedef struct crossings {
     lanes type[7]; /* x, y, z, xy, xz, yz, sample; without diagonals, sample is the fourth */
 } crossings;
@@ -225,7 +225,7 @@ inline_always lanes snapped_triangles(lanes a, lanes b, lanes c, lanes d, lanes 
     return emits & ~*two;
 }
 
-/* Leaves of the cubes those that emit any. */
+/* Clears the bits of cubes that emit no triangle. */
 inline_always lanes snap_triangles(const cube_rows *r, lanes *active) {
     const lanes cubes = *active;
     const cube_corners c = corners_of(r), zeros = zero_corners_of(r);

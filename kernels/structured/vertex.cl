@@ -16,12 +16,7 @@ typedef struct grid_arrays {
     global const uchar *blanked;     /* samples */
 } grid_arrays;
 
-/* The first sample of a brick: its position in the grid. */
-typedef struct corner {
-    uint x, y, z;
-} corner;
-
-/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, counted from edges_corner (mesh.cl). Then two
+/* An edge in one word. Bits 0-6, 7-10, 11-13: x, y, z of its first end, counted from edges_origin (mesh.cl). Then two
  * bits for each axis: the step to its other end, -1, 0 or 1, plus 1. */
 #define EDGE_CODE(x, y, z, step_x, step_y, step_z)                                                                     \
     ((uint)(x) | (uint)(y) << 7 | (uint)(z) << 11 | (uint)((step_x) + 1) << 14 | (uint)((step_y) + 1) << 16 |          \
@@ -31,11 +26,11 @@ typedef struct corner {
 
 #if GRID == 0
 /* The position on the edge at t, in world space. */
-inline_always void position_make(const slab *s, corner c, uint edge, float t, float out[3]) {
+inline_always void position_make(const slab *s, grid_index origin, uint edge, float t, float out[3]) {
     int step_x = (int)(edge >> 14 & 3) - 1, step_y = (int)(edge >> 16 & 3) - 1, step_z = (int)(edge >> 18 & 3) - 1;
-    float x = (float)(s->first[0] + (int)(c.x + (edge & 0x7f))) + (float)step_x * t;
-    float y = (float)(s->first[1] + (int)(c.y + (edge >> 7 & 0xf))) + (float)step_y * t;
-    float z = (float)(s->first[2] + (int)(c.z + (edge >> 11 & 7))) + (float)step_z * t;
+    float x = (float)(s->first[0] + (int)(origin.x + (edge & 0x7f))) + (float)step_x * t;
+    float y = (float)(s->first[1] + (int)(origin.y + (edge >> 7 & 0xf))) + (float)step_y * t;
+    float z = (float)(s->first[2] + (int)(origin.z + (edge >> 11 & 7))) + (float)step_z * t;
     const float *m = s->space.matrix;
     out[0] = ((m[0] * x + m[1] * y) + m[2] * z) + m[3];
     out[1] = ((m[4] * x + m[5] * y) + m[6] * z) + m[7];
@@ -44,12 +39,12 @@ inline_always void position_make(const slab *s, corner c, uint edge, float t, fl
 #else
 /* The position on the edge at t, between the points of its ends. The edge's samples are at `from` and `from` + `step`
  * in the sample buffer. */
-inline_always void position_between(const slab *s, grid_arrays in, corner c, uint edge, ulong from, long step, float t,
-                                    float out[3]) {
+inline_always void position_between(const slab *s, grid_arrays in, grid_index origin, uint edge, ulong from, long step,
+                                    float t, float out[3]) {
 #if GRID == 1
-    global const float *x = in.coordinates + (c.x + (edge & 0x7f));
-    global const float *y = in.coordinates + s->nx + (c.y + (edge >> 7 & 0xf));
-    global const float *z = in.coordinates + s->nx + s->ny + (c.z + (edge >> 11 & 7));
+    global const float *x = in.coordinates + (origin.x + (edge & 0x7f));
+    global const float *y = in.coordinates + s->nx + (origin.y + (edge >> 7 & 0xf));
+    global const float *z = in.coordinates + s->nx + s->ny + (origin.z + (edge >> 11 & 7));
     float3 p0 = (float3)(*x, *y, *z);
     float3 p1 = (float3)(x[(int)(edge >> 14 & 3) - 1], y[(int)(edge >> 16 & 3) - 1], z[(int)(edge >> 18 & 3) - 1]);
 #else
@@ -153,8 +148,9 @@ inline_always void gradient_map(REAL j[3][3], REAL g[3], REAL n[3]) {
 
 /* Unit length, towards lower values; zero where the gradient vanishes. Gradient and Jacobian are made of the same
  * differences, and interpolated along the edge. */
-inline_always void normal_store(grid_arrays in, const slab *s, corner c, uint edge, float t, global float *out) {
-    const uint a[3] = {c.x + (edge & 0x7f), c.y + (edge >> 7 & 0xf), c.z + (edge >> 11 & 7)};
+inline_always void normal_store(grid_arrays in, const slab *s, grid_index origin, uint edge, float t,
+                                global float *out) {
+    const uint a[3] = {origin.x + (edge & 0x7f), origin.y + (edge >> 7 & 0xf), origin.z + (edge >> 11 & 7)};
     const uint b[3] = {a[0] + (edge >> 14 & 3) - 1, a[1] + (edge >> 16 & 3) - 1, a[2] + (edge >> 18 & 3) - 1};
     REAL g[3] = {0, 0, 0}, n[3];
 #if GRID

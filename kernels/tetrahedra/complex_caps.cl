@@ -75,11 +75,11 @@ inline_always uint face_inside(const complex_job *c, const cap_face *f, cap_coun
 }
 
 /* Inside points and triangles of a tile; stores where they begin, unless it is a recount. */
-inline_always uint2 tile_caps_count(tile_tools tools, uint number, cap_count a, bool recount) {
+inline_always uint2 tile_caps_count(tile_tools tools, uint tile_index, cap_count a, bool recount) {
     const complex_job *c = tools.c;
     uint2 running = 0;
     for (uint start = 0; start < c->tile_caps; start += WORK_ITEMS) {
-        const uint n = number * c->tile_caps + start + (uint)get_local_id(0);
+        const uint n = tile_index * c->tile_caps + start + (uint)get_local_id(0);
         const bool exists = start + (uint)get_local_id(0) < c->tile_caps;
         const bool has_point = exists && n < c->cap_points, has_face = exists && n < c->cap_faces;
         bool inside = false;
@@ -96,16 +96,16 @@ inline_always uint2 tile_caps_count(tile_tools tools, uint number, cap_count a, 
     return running;
 }
 
-inline_always void cap_tile_settle(tile_tools tools, uint number, cap_count a) {
+inline_always void cap_tile_settle(tile_tools tools, uint tile_index, cap_count a) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(tools.scan, number, look, &unposted)) {
+    while (!tile_settle(tools.scan, tile_index, look, &unposted)) {
         tile_post(tools.scan, unposted, tile_caps_count(tools, unposted, a, true));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == tools.c->cap_tiles) {
-        a.head[HEAD_CAP_VERTICES] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
-        a.head[HEAD_CAP_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
+    if (get_local_id(0) == 0 && tile_index + 1 == tools.c->cap_tiles) {
+        a.head[HEAD_CAP_VERTICES] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_X);
+        a.head[HEAD_CAP_TRIANGLES] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_Y);
     }
 }
 
@@ -123,15 +123,15 @@ kernel void caps_count(complex_job c, global const BITS *samples, global const u
                    firsts,
                    state};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0;
-    while (number < c.cap_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + TICKET_CAPS_COUNT], shared);
-        if (number < c.cap_tiles) {
-            tile_post(tools.scan, number, tile_caps_count(tools, number, a, false));
+    uint tile_index = 0;
+    while (tile_index < c.cap_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + TICKET_CAPS_COUNT], shared);
+        if (tile_index < c.cap_tiles) {
+            tile_post(tools.scan, tile_index, tile_caps_count(tools, tile_index, a, false));
             if (SETTLES_LATER)
-                own_append(&own, number, tiles);
+                own_append(&own, tile_index, tiles);
             else
-                cap_tile_settle(tools, number, a);
+                cap_tile_settle(tools, tile_index, a);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])
@@ -151,7 +151,7 @@ typedef struct cap_emit {
 
 /* The vertex at an inside point. */
 inline_always uint point_vertex(const complex_job *c, uint point, cap_emit e) {
-    return e.state[HEAD_VERTICES] + tile_before(e.cap_tiles, point / c->tile_caps, TILE_VERTICES) + e.numbers[point];
+    return e.state[HEAD_VERTICES] + tile_before(e.cap_tiles, point / c->tile_caps, TILE_SUM_X) + e.numbers[point];
 }
 
 /* The vertex on a crossed edge; where there is none, samples have changed, which the head tells. */
@@ -204,7 +204,7 @@ inline_always void quadrilateral_emit(const complex_job *c, uint4 p, uint inside
 inline_always void cap_face_emit(const complex_job *c, uint n, cap_emit e) {
     const cap_face f = e.in.faces[n];
     global uint *out = e.triangles + 3ul * (e.state[HEAD_TRIANGLES] +
-                                            tile_before(e.cap_tiles, n / c->tile_caps, TILE_TRIANGLES) + e.firsts[n]);
+                                            tile_before(e.cap_tiles, n / c->tile_caps, TILE_SUM_Y) + e.firsts[n]);
     const bool triangle = cap_is_triangle(&f);
     uint inside = 0;
     for (uint m = 0; m < 3; m++) inside |= (uint)(e.numbers[f.points[m]] != EDGE_NONE) << m;
@@ -224,7 +224,7 @@ kernel void caps_emit(complex_job c, global const float *points, global const ui
                       global const uint *numbers, global const uint *firsts, global float *positions,
                       global uint *triangles) {
     local uint shared[4];
-    uint number = 0;
+    uint tile_index = 0;
     const cap_emit e = {{cap_points + c.cap_point_offset, faces + c.cap_face_offset, active, cases, table},
                         numbers,
                         firsts,
@@ -233,10 +233,10 @@ kernel void caps_emit(complex_job c, global const float *points, global const ui
                         cap_tiles,
                         triangles};
     points += c.point_offset;
-    while (number < c.cap_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + TICKET_CAPS_EMIT], shared);
-        for (uint start = 0; start < c.tile_caps && number < c.cap_tiles; start += WORK_ITEMS) {
-            const uint n = number * c.tile_caps + start + (uint)get_local_id(0);
+    while (tile_index < c.cap_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + TICKET_CAPS_EMIT], shared);
+        for (uint start = 0; start < c.tile_caps && tile_index < c.cap_tiles; start += WORK_ITEMS) {
+            const uint n = tile_index * c.tile_caps + start + (uint)get_local_id(0);
             if (start + (uint)get_local_id(0) >= c.tile_caps) continue;
             if (n < c.cap_points && numbers[n] != EDGE_NONE)
                 vstore3(vload3(e.in.points[n], points), point_vertex(&c, n, e), positions);

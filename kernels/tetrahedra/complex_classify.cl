@@ -7,17 +7,17 @@
 
 #include "complex_count.cl"
 
-inline_always void cluster_tile_settle(tile_tools tools, uint number, cluster_arrays a) {
+inline_always void cluster_tile_settle(tile_tools tools, uint tile_index, cluster_arrays a) {
     uint unposted;
     bool look = false;
     cluster_sums none = {0};
-    while (!tile_settle(tools.scan, number, look, &unposted)) {
+    while (!tile_settle(tools.scan, tile_index, look, &unposted)) {
         tile_post(tools.scan, unposted, tile_count(tools, unposted, a, true, &none));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == tools.c->cluster_tiles) {
-        a.head[HEAD_ACTIVE] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
-        a.head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
+    if (get_local_id(0) == 0 && tile_index + 1 == tools.c->cluster_tiles) {
+        a.head[HEAD_ACTIVE] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_X);
+        a.head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_Y);
     }
 }
 
@@ -40,15 +40,15 @@ kernel void complex_classify(complex_job c, global const BITS *samples, global c
         {samples + c.sample_offset, tetrahedra + c.tetrahedron_offset CELL_ARRAYS}, ranges, clusters, active, state};
     cluster_sums found = {0};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0;
-    while (number < c.cluster_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + KERNEL_CLASSIFY], shared);
-        if (number < c.cluster_tiles) {
-            tile_post(tools.scan, number, tile_count(tools, number, a, false, &found));
+    uint tile_index = 0;
+    while (tile_index < c.cluster_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + KERNEL_CLASSIFY], shared);
+        if (tile_index < c.cluster_tiles) {
+            tile_post(tools.scan, tile_index, tile_count(tools, tile_index, a, false, &found));
             if (SETTLES_LATER)
-                own_append(&own, number, tools.scan.tiles);
+                own_append(&own, tile_index, tools.scan.tiles);
             else
-                cluster_tile_settle(tools, number, a);
+                cluster_tile_settle(tools, tile_index, a);
         }
     }
     if (LIST_BATCH > 1) clusters_append(a, &found);
@@ -72,8 +72,8 @@ inline_always void cluster_list(const complex_job *c, uint n, global const uint 
                                 global const uchar *cases, global active_tetrahedron *out) {
     cluster_state cluster = clusters[n];
     uint tile = n / c->tile_clusters;
-    uint first = tile_before(tiles, tile, TILE_VERTICES) + cluster.active_before;
-    uint triangle = tile_before(tiles, tile, TILE_TRIANGLES) + cluster.triangles_before;
+    uint first = tile_before(tiles, tile, TILE_SUM_X) + cluster.active_before;
+    uint triangle = tile_before(tiles, tile, TILE_SUM_Y) + cluster.triangles_before;
     for (ulong rest = nibbles_mixed(cluster.patterns); rest; rest &= rest - 1) {
         uint bit = lowest_bit(rest), pattern = (uint)(cluster.patterns >> bit) & 15;
         uint4 points = vload4(n * CLUSTER_TETRAHEDRA + bit / 4, tetrahedra);

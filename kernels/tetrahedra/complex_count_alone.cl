@@ -30,8 +30,8 @@ inline_always ulong mixed_prefetch(tile_tools tools, uint first, uint end, clust
 }
 
 /* Active items and triangles of a tile; recount: nothing is stored. */
-inline_always uint2 tile_count(tile_tools tools, uint number, cluster_arrays a, bool recount, cluster_sums *sums) {
-    uint first = number * tools.c->tile_clusters, end = min(first + tools.c->tile_clusters, tools.c->cluster_count);
+inline_always uint2 tile_count(tile_tools tools, uint tile_index, cluster_arrays a, bool recount, cluster_sums *sums) {
+    uint first = tile_index * tools.c->tile_clusters, end = min(first + tools.c->tile_clusters, tools.c->cluster_count);
     uint2 running = 0;
     if (!tools.c->ranges_known) {
         for (uint n = first; n < end; n++) {

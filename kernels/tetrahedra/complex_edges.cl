@@ -42,7 +42,7 @@ inline_always uint edge_hash(uint2 edge) {
     return x ^ x >> 13;
 }
 
-/* The entry of an edge, EDGE_NONE where it has none. */
+/* The index of an edge's entry, EDGE_NONE where it has none. */
 inline_always uint edge_find(const complex_job *c, uint2 edge, uint entry, global const active_item *active,
                              global const uchar *cases, volatile global uint *table) {
     for (uint probe = 0; probe <= c->probe_limit; probe++) {
@@ -60,7 +60,7 @@ inline_always uint edge_number(const complex_job *c, uint owner, global const ac
                                global const uint *tiles) {
     global const active_item *t = active + slot_item(c, owner);
     uint lower = t->owned & ((1u << slot_edge(c, owner)) - 1);
-    return tile_before(tiles, slot_item(c, owner) / c->tile_actives, TILE_VERTICES) + t->vertex + (uint)popcount(lower);
+    return tile_before(tiles, slot_item(c, owner) / c->tile_actives, TILE_SUM_X) + t->vertex + (uint)popcount(lower);
 }
 
 #endif

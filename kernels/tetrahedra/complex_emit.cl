@@ -59,15 +59,15 @@ kernel void complex_emit(complex_job c, global const BITS *samples, global const
                          global const uint *tiles, global const uint *table, global const uint *entries,
                          global float *positions, global uint *triangles) {
     local uint shared[4];
-    uint number = 0;
+    uint tile_index = 0;
     samples += c.sample_offset, points += c.point_offset;
-    while (number < c.active_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + KERNEL_EMIT], shared);
+    while (tile_index < c.active_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + KERNEL_EMIT], shared);
         for (uint start = 0; start < c.tile_actives; start += WORK_ITEMS) {
-            uint a = number * c.tile_actives + start + (uint)get_local_id(0);
-            if (WORK_ITEMS == 1 && number < c.active_tiles)
+            uint a = tile_index * c.tile_actives + start + (uint)get_local_id(0);
+            if (WORK_ITEMS == 1 && tile_index < c.active_tiles)
                 item_prefetch(&c, a + FETCH_AHEAD, samples, points, active, cases, table, entries);
-            if (number < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
+            if (tile_index < c.active_tiles && start + (uint)get_local_id(0) < c.tile_actives && a < c.active_count)
                 item_emit(&c, a, samples, points, active, cases, tiles, table, entries, positions, triangles);
         }
     }

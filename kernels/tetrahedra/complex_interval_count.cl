@@ -170,7 +170,7 @@ inline_always uint pattern_of(const volume_cluster *c, uint m) {
     return (uint)(c->low >> 4 * m & 15) << 4 | (uint)(c->high >> 4 * m & 15);
 }
 
-/* The tetrahedra of a cluster that lie within in part. The lowest bit of four for each, here and in what follows. */
+/* The tetrahedra of a cluster of which a part, or all, lies within: the lowest bit of four for each, here and below. */
 inline_always ulong cluster_reached(const volume_cluster *c) { return nibbles_any(c->low) & nibbles_any(~c->high); }
 
 /* Tetrahedra of x that have one point, two or three points in it. */
@@ -230,11 +230,11 @@ inline_always void count_prefetch(uint n, const volume_count *a) {
 #endif
 
 /* The sums of a tile; recount: nothing is stored. */
-inline_always uint4 volume_tile_count(tile_scan scan, uint number, const volume_count *a, bool recount) {
+inline_always uint4 volume_tile_count(tile_scan scan, uint tile_index, const volume_count *a, bool recount) {
     const uint items = 1u << a->v->tile_shift;
     uint2 volume = 0, cuts = 0;
     for (uint start = 0; start < items; start += WORK_ITEMS) {
-        const uint m = start + (uint)get_local_id(0), n = number * items + m;
+        const uint m = start + (uint)get_local_id(0), n = tile_index * items + m;
         const bool has_points = m < items && n < a->v->word_count, has_cluster = m < items && n < a->low->cluster_count;
         volume_points points = {0, 0, 0};
         volume_cluster cluster = {0, 0, 0, 0};
@@ -257,27 +257,27 @@ inline_always tile_scan scan_of(tile_scan scan, const volume_count *a, uint whic
     return scan;
 }
 
-inline_always void volume_tile_post(tile_scan scan, uint number, const volume_count *a, uint4 sums) {
-    tile_post(scan_of(scan, a, SCAN_VOLUME), number, sums.xy);
-    tile_post(scan_of(scan, a, SCAN_CUTS), number, sums.zw);
+inline_always void volume_tile_post(tile_scan scan, uint tile_index, const volume_count *a, uint4 sums) {
+    tile_post(scan_of(scan, a, SCAN_VOLUME), tile_index, sums.xy);
+    tile_post(scan_of(scan, a, SCAN_CUTS), tile_index, sums.zw);
 }
 
-inline_always void volume_tile_settle(tile_scan scan, uint number, const volume_count *a, uint which) {
+inline_always void volume_tile_settle(tile_scan scan, uint tile_index, const volume_count *a, uint which) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(scan_of(scan, a, which), number, look, &unposted)) {
+    while (!tile_settle(scan_of(scan, a, which), tile_index, look, &unposted)) {
         volume_tile_post(scan, unposted, a, volume_tile_count(scan, unposted, a, true));
         look = true;
     }
-    if (get_local_id(0) != 0 || number + 1 != a->v->tile_count) return;
+    if (get_local_id(0) != 0 || tile_index + 1 != a->v->tile_count) return;
     global const uint *tiles = scan_tiles(a->head, a->v, which);
-    a->head[which == SCAN_VOLUME ? VOLUME_SAMPLES : VOLUME_CUTS] = tile_before(tiles, number + 1, TILE_VERTICES);
-    a->head[which == SCAN_VOLUME ? VOLUME_TETRAHEDRA : VOLUME_FOURS] = tile_before(tiles, number + 1, TILE_TRIANGLES);
+    a->head[which == SCAN_VOLUME ? VOLUME_SAMPLES : VOLUME_CUTS] = tile_before(tiles, tile_index + 1, TILE_SUM_X);
+    a->head[which == SCAN_VOLUME ? VOLUME_TETRAHEDRA : VOLUME_FOURS] = tile_before(tiles, tile_index + 1, TILE_SUM_Y);
 }
 
-inline_always void volume_tile_settle_both(tile_scan scan, uint number, const volume_count *a) {
-    volume_tile_settle(scan, number, a, SCAN_VOLUME);
-    volume_tile_settle(scan, number, a, SCAN_CUTS);
+inline_always void volume_tile_settle_both(tile_scan scan, uint tile_index, const volume_count *a) {
+    volume_tile_settle(scan, tile_index, a, SCAN_VOLUME);
+    volume_tile_settle(scan, tile_index, a, SCAN_CUTS);
 }
 
 /* state: head and tiles, cleared. */
@@ -292,15 +292,15 @@ kernel void complex_interval_count(complex_job low, complex_job high, volume_job
                             ranges, used,  cases, clusters,
                             points, state};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0;
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_COUNT], shared);
-        if (number < v.tile_count) {
-            volume_tile_post(scan, number, &a, volume_tile_count(scan, number, &a, false));
+    uint tile_index = 0;
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_COUNT], shared);
+        if (tile_index < v.tile_count) {
+            volume_tile_post(scan, tile_index, &a, volume_tile_count(scan, tile_index, &a, false));
             if (SETTLES_LATER)
-                own_append(&own, number, scan.tiles);
+                own_append(&own, tile_index, scan.tiles);
             else
-                volume_tile_settle_both(scan, number, &a);
+                volume_tile_settle_both(scan, tile_index, &a);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = scan.tiles[TILE_WORDS * n + TILE_NEXT])

@@ -26,35 +26,35 @@ typedef struct volume_vertices {
 /* The number of the first vertex at a point of word n. */
 inline_always uint points_before(uint n, const volume_vertices *a) {
     global const uint *tiles = scan_tiles(a->state, a->v, SCAN_VOLUME);
-    return tile_before(tiles, n >> a->v->tile_shift, TILE_VERTICES) + a->points[n].before;
+    return tile_before(tiles, n >> a->v->tile_shift, TILE_SUM_X) + a->points[n].before;
 }
 
-inline_always void point_store(uint point, uint number, const volume_vertices *a) {
-    a->numbers[point] = number;
-    vstore3(vload3(point, a->coordinates), number - a->v->window, a->positions);
+inline_always void point_store(uint point, uint vertex, const volume_vertices *a) {
+    a->numbers[point] = vertex;
+    vstore3(vload3(point, a->coordinates), vertex - a->v->window, a->positions);
 }
 
 /* The numbers of a tile's first vertices on edges, of the low bound and of the high one. */
-inline_always uint2 crossings_before(uint number, const volume_vertices *a) {
+inline_always uint2 crossings_before(uint tile_index, const volume_vertices *a) {
     global const uint *tiles = scan_tiles(a->state, a->v, SCAN_CROSSINGS);
-    return (uint2)(a->v->low_first + tile_before(tiles, number, TILE_VERTICES),
-                   a->v->high_first + tile_before(tiles, number, TILE_TRIANGLES));
+    return (uint2)(a->v->low_first + tile_before(tiles, tile_index, TILE_SUM_X),
+                   a->v->high_first + tile_before(tiles, tile_index, TILE_SUM_Y));
 }
 
-/* The vertex of edge n, which owns it, and its number in the list. */
-inline_always void crossing_store(uint n, uint number, const volume_vertices *a) {
+/* Stores the vertex of edge n, which owns it; then its number replaces the edge's first point in the list. */
+inline_always void crossing_store(uint n, uint vertex, const volume_vertices *a) {
     const uint2 edge = a->edges[n];
     const complex_job *bound = edge.x > edge.y ? a->high : a->low;
     edge_vertex(bound, (uint2)(min(edge.x, edge.y), max(edge.x, edge.y)), a->samples, a->coordinates,
-                a->positions + 3ul * (number - a->v->window));
-    a->edges[n].x = number;
+                a->positions + 3ul * (vertex - a->v->window));
+    a->edges[n].x = vertex;
 }
 
 #if WORK_ITEMS == 1
 
-inline_always void tile_points(uint number, const volume_vertices *a) {
-    const uint items = 1u << a->v->tile_shift, end = min((number + 1) * items, a->v->word_count);
-    for (uint n = number * items; n < end; n++) {
+inline_always void tile_points(uint tile_index, const volume_vertices *a) {
+    const uint items = 1u << a->v->tile_shift, end = min((tile_index + 1) * items, a->v->word_count);
+    for (uint n = tile_index * items; n < end; n++) {
         uint vertex = points_before(n, a);
         for (ulong rest = a->points[n].within; rest; rest &= rest - 1)
             point_store(64 * n + lowest_bit(rest), vertex++, a);
@@ -84,9 +84,9 @@ inline_always void owned_find(uint first, uint end, const volume_vertices *a, ow
     }
 }
 
-inline_always void tile_crossings(uint number, const volume_vertices *a, local uint2 *sums) {
-    const edge_span span = tile_edges(number, a->state, a->v);
-    uint2 next = crossings_before(number, a);
+inline_always void tile_crossings(uint tile_index, const volume_vertices *a, local uint2 *sums) {
+    const edge_span span = tile_edges(tile_index, a->state, a->v);
+    uint2 next = crossings_before(tile_index, a);
     owned_edges owned[2];
     uint turn = 0;
     owned_find(span.first, span.end, a, &owned[0]);
@@ -102,18 +102,18 @@ inline_always void tile_crossings(uint number, const volume_vertices *a, local u
 
 #else
 
-inline_always void tile_points(uint number, const volume_vertices *a) {
+inline_always void tile_points(uint tile_index, const volume_vertices *a) {
     const uint items = 1u << a->v->tile_shift;
     for (uint m = (uint)get_local_id(0); m < 64 * items; m += WORK_ITEMS) {
-        const uint n = number * items + m / 64, bit = m % 64;
+        const uint n = tile_index * items + m / 64, bit = m % 64;
         if (n >= a->v->word_count || !(a->points[n].within >> bit & 1)) continue;
         point_store(64 * n + bit, points_before(n, a) + (uint)popcount(a->points[n].within & ((1ul << bit) - 1)), a);
     }
 }
 
-inline_always void tile_crossings(uint number, const volume_vertices *a, local uint2 *sums) {
-    const edge_span span = tile_edges(number, a->state, a->v);
-    const uint2 first = crossings_before(number, a);
+inline_always void tile_crossings(uint tile_index, const volume_vertices *a, local uint2 *sums) {
+    const edge_span span = tile_edges(tile_index, a->state, a->v);
+    const uint2 first = crossings_before(tile_index, a);
     uint2 running = 0;
     for (uint start = span.first; start < span.end; start += WORK_ITEMS) {
         const uint n = start + (uint)get_local_id(0);
@@ -135,12 +135,12 @@ kernel void complex_interval_crossings(complex_job low, complex_job high, volume
     const volume_vertices a = {
         &low,    &high, &v,       samples + low.sample_offset, coordinates + low.point_offset, points, edges, entries,
         numbers, state, positions};
-    uint number = 0;
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_CROSSINGS], shared);
-        if (number >= v.tile_count) break;
-        tile_points(number, &a);
-        tile_crossings(number, &a, sums);
+    uint tile_index = 0;
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_CROSSINGS], shared);
+        if (tile_index >= v.tile_count) break;
+        tile_points(tile_index, &a);
+        tile_crossings(tile_index, &a, sums);
     }
 }
 

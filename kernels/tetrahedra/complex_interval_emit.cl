@@ -19,10 +19,10 @@ kernel void complex_interval_emit(complex_job low, volume_job v, global const ui
     local uint shared[4];
     const volume_emit e = {
         &low, &v, tetrahedra + low.tetrahedron_offset, cases, clusters, numbers, edges, slots, entries, state, out};
-    uint number = 0;
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_EMIT], shared);
-        if (number < v.tile_count) tile_emit(number, &e);
+    uint tile_index = 0;
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_EMIT], shared);
+        if (tile_index < v.tile_count) tile_emit(tile_index, &e);
     }
 }
 

@@ -14,7 +14,7 @@ enum { CLUSTERS_AHEAD = 8 };
 
 /* ---------------------------------------------------------------------------- tetrahedra that lie wholly within */
 
-/* Brings numbers into order; which were not. */
+/* Orders each pair a[n], b[n]; returns which pairs were exchanged. */
 inline_always int8 pairs_order(uint8 *a, uint8 *b) {
     const uint8 low = min(*a, *b), high = max(*a, *b);
     const int8 exchanged = *a > *b;
@@ -74,7 +74,7 @@ inline_always uint4 point_numbers(global const uint *points, const volume_emit *
     return e->v->word_count ? min(four_numbers(p, e->numbers), (uint4)e->v->point_last) : p;
 }
 
-/* slots: those of its cuts, behind the tile's first entry. Of what it does not have numbers are any. */
+/* slots: those of its cuts, behind the tile's first entry. Numbers of cuts that it does not have are not used. */
 inline_always part_numbers part_read(global const uint *points, global const ushort *slots, bool has_both,
                                      global const uint *entries, const volume_emit *e) {
     part_numbers n;
@@ -112,7 +112,7 @@ inline_always uint *cuts_store(const volume_cluster *c, global const uint *point
     return out;
 }
 
-/* None is cut, but not all are there or present. */
+/* No tetrahedron is cut. Some do not exist, as the cluster is the last one, or have a missing point. */
 inline_always uint *few_store(ulong reached, global const uint *points, const volume_emit *e, uint *out) {
     for (ulong rest = reached; rest; rest &= rest - 1, out += 4) {
         uint16 numbers = 0, none = 0;
@@ -154,8 +154,8 @@ inline_always void entries_resolve(edge_span span, const volume_emit *e) {
     }
 }
 
-/* Tetrahedra on their way to the buffer: words of it from the cache line on that the next ones go to, of which the
- * first `skip` are others'. Whole lines are stored at once. */
+/* A copy of the end of the output. It begins at the cache line that the next tetrahedron goes to; the line's first
+ * `skip` words were stored before. Lines are stored when they are whole. */
 enum { LINE_WORDS = 16, STAGE_FROM = 512, STAGE_WORDS = STAGE_FROM + 6 * 4 * CLUSTER_TETRAHEDRA + 2 * LINE_WORDS };
 
 typedef struct out_stage {
@@ -186,13 +186,13 @@ inline_always uint *stage_flush(out_stage *s, const uint *end) {
     return words + rest;
 }
 
-inline_always void tile_emit(uint number, const volume_emit *e) {
-    const uint items = 1u << e->v->tile_shift, end = min((number + 1) * items, e->c->cluster_count);
-    const edge_span span = tile_edges(number, e->state, e->v);
+inline_always void tile_emit(uint tile_index, const volume_emit *e) {
+    const uint items = 1u << e->v->tile_shift, end = min((tile_index + 1) * items, e->c->cluster_count);
+    const edge_span span = tile_edges(tile_index, e->state, e->v);
     out_stage stage;
-    uint *out = stage_open(&stage, tile_out(number, e)), *words = (uint *)stage.lines;
+    uint *out = stage_open(&stage, tile_out(tile_index, e)), *words = (uint *)stage.lines;
     entries_resolve(span, e);
-    for (uint n = number * items; n < end; n++) {
+    for (uint n = tile_index * items; n < end; n++) {
         emit_prefetch(n, e);
         out = cluster_emit(n, span.first, e, out);
         if (out >= words + STAGE_FROM) out = stage_flush(&stage, out);

@@ -32,12 +32,12 @@ inline_always void own_emit(uint n, uint m, uint first, const volume_emit *e, gl
         out[corner] = vertex_of(entry[1 + corner], points, slot, slot + 4 * (uint)(low >> 4 * m & 1), e);
 }
 
-inline_always void tile_emit(uint number, const volume_emit *e) {
+inline_always void tile_emit(uint tile_index, const volume_emit *e) {
     const uint items = 1u << e->v->tile_shift;
     for (uint m = (uint)get_local_id(0); m < CLUSTER_TETRAHEDRA * items; m += WORK_ITEMS) {
-        const uint n = number * items + m / CLUSTER_TETRAHEDRA;
+        const uint n = tile_index * items + m / CLUSTER_TETRAHEDRA;
         if (n < e->c->cluster_count)
-            own_emit(n, m % CLUSTER_TETRAHEDRA, tile_slots(number, e->state, e->v), e, tile_out(number, e));
+            own_emit(n, m % CLUSTER_TETRAHEDRA, tile_slots(tile_index, e->state, e->v), e, tile_out(tile_index, e));
     }
 }
 

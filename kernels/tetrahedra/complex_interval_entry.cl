@@ -46,8 +46,8 @@ inline_always global const uchar *entry_of(global const uint *points, uint patte
 }
 
 /* Where a tile's tetrahedra begin. */
-inline_always global uint *tile_out(uint number, const volume_emit *e) {
-    return e->out + 4ul * tile_before(scan_tiles(e->state, e->v, SCAN_VOLUME), number, TILE_TRIANGLES);
+inline_always global uint *tile_out(uint tile_index, const volume_emit *e) {
+    return e->out + 4ul * tile_before(scan_tiles(e->state, e->v, SCAN_VOLUME), tile_index, TILE_SUM_Y);
 }
 
 #endif

@@ -45,27 +45,31 @@ enum {
 
 /* What the scans sum up: vertices at points and tetrahedra of the volume; cuts and those with four edges; vertices on
  * crossed edges of either bound. Tiles of the last one have the number of edges in the list, too. */
-enum { SCAN_VOLUME, SCAN_CUTS, SCAN_CROSSINGS, VOLUME_SCANS, TILE_EDGES = TILE_BRICKS };
+enum { SCAN_VOLUME, SCAN_CUTS, SCAN_CROSSINGS, VOLUME_SCANS, TILE_EDGES = TILE_EXTRA };
 
 enum { VOLUME_TILE_MOST = 65536 / (2 * 4 * CLUSTER_TETRAHEDRA) };
 
-/* An edge in the list, and a slot: the place of its edge behind the tile's first one. */
+/* An edge in the list, and a slot: the index of its edge behind the tile's first one. */
 enum { VOLUME_EDGE_BYTES = 8, VOLUME_SLOT_BYTES = 2 };
 
 /* For each edge in the list: its entry in the table; then, with this bit, the first edge of the same points, which owns
- * the vertex. In the end that edge has the vertex's number in the place of its first point. */
+ * the vertex. In the end that edge has the vertex's number instead of its first point. */
 #define EDGE_RESOLVED 0x80000000u
 
 /* Vertices of a case, as bytes: one of the tetrahedron's points; a slot of its crossed edges of the low bound, or of
  * the high bound. */
 enum { VOLUME_POINT, VOLUME_LOW_SLOT = 4, VOLUME_HIGH_SLOT = 8 };
 
-/* The table of cases. For each of 256 patterns, 16 times that of the points not below plus that of the points above:
- * how many tetrahedra there are, and the number of its case. For each of 64 sets of pairs of points of which the first
- * has the larger number (01 02 03 12 13 23, bit 0 first) the number of their order. For each of 16 patterns of a bound
- * the numbers of its crossed edges, VOLUME_NO_EDGE where there is no fourth. For each of these 16 the same as lanes of
- * 24 words, the first points of eight edges, their second ones, a word each: both points of each edge, then the words.
- * Then an entry for each order and case: how many tetrahedra, and their corners. */
+/* The table of cases, in bytes. The pattern of a tetrahedron is 16 times that of the points not below, plus that of the
+ * points above; the pattern of a bound has a bit for each point on its far side.
+ *
+ *     from 0                by the tetrahedron's pattern: how many tetrahedra it gives
+ *     VOLUME_CASE_OF        by the same: its case, 0 to 80
+ *     VOLUME_ORDER_OF       by which pairs of points (01 02 03 12 13 23, bit 0 first) have the larger number first:
+ *                           which of the 24 orders of the points that is
+ *     VOLUME_EDGES_OF       by a bound's pattern: its four crossed edges; VOLUME_NO_EDGE where there is no fourth
+ *     VOLUME_LANES          by a bound's pattern: 16 lanes of cut_edges() (complex_interval_list.cl)
+ *     VOLUME_ENTRIES        by order, then case: how many tetrahedra, then their corners */
 enum {
     VOLUME_PATTERNS = 256,
     VOLUME_CASES = 81,

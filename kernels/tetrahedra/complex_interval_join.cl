@@ -15,9 +15,9 @@ typedef struct edge_span {
     uint first, end;
 } edge_span;
 
-inline_always edge_span tile_edges(uint number, global uint *state, const volume_job *v) {
-    const uint first = tile_slots(number, state, v);
-    const edge_span span = {first, first + scan_tiles(state, v, SCAN_CROSSINGS)[TILE_WORDS * number + TILE_EDGES]};
+inline_always edge_span tile_edges(uint tile_index, global uint *state, const volume_job *v) {
+    const uint first = tile_slots(tile_index, state, v);
+    const edge_span span = {first, first + scan_tiles(state, v, SCAN_CROSSINGS)[TILE_WORDS * tile_index + TILE_EDGES]};
     return span;
 }
 
@@ -88,11 +88,11 @@ inline_always void tile_join(edge_span span, const volume_job *v, global const u
 kernel void complex_interval_join(volume_job v, global const uint2 *edges, global uint *table, global uint *entries,
                                   global uint *state) {
     local uint shared[4];
-    uint number = 0;
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_JOIN], shared);
-        if (number < v.tile_count)
-            tile_join(tile_edges(number, state, &v), &v, edges, table, entries, &state[VOLUME_FULL]);
+    uint tile_index = 0;
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_JOIN], shared);
+        if (tile_index < v.tile_count)
+            tile_join(tile_edges(tile_index, state, &v), &v, edges, table, entries, &state[VOLUME_FULL]);
     }
 }
 
@@ -105,10 +105,10 @@ inline_always uint edge_owner(uint n, global const uint *table, global const uin
     return entry & EDGE_RESOLVED ? entry & ~EDGE_RESOLVED : table[entry];
 }
 
-/* Counts the vertices of a tile on either bound; puts owners in the place of entries unless `recount`. */
-inline_always uint2 tile_number(tile_scan scan, uint number, const volume_job *v, global const uint2 *edges,
+/* Counts the vertices of a tile on either bound; replaces entries by owners unless `recount`. */
+inline_always uint2 tile_number(tile_scan scan, uint tile_index, const volume_job *v, global const uint2 *edges,
                                 global const uint *table, global uint *entries, global uint *state, bool recount) {
-    const edge_span span = tile_edges(number, state, v);
+    const edge_span span = tile_edges(tile_index, state, v);
     uint2 sums = 0, running = 0;
     for (uint n = span.first + (uint)get_local_id(0); n < span.end; n += WORK_ITEMS) {
         if (WORK_ITEMS == 1 && n + FETCH_AHEAD < span.end && !recount) line_prefetch(table + entries[n + FETCH_AHEAD]);
@@ -121,17 +121,17 @@ inline_always uint2 tile_number(tile_scan scan, uint number, const volume_job *v
     return running;
 }
 
-inline_always void number_tile_settle(tile_scan scan, uint number, const volume_job *v, global const uint2 *edges,
+inline_always void number_tile_settle(tile_scan scan, uint tile_index, const volume_job *v, global const uint2 *edges,
                                       global const uint *table, global uint *entries, global uint *state) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(scan, number, look, &unposted)) {
+    while (!tile_settle(scan, tile_index, look, &unposted)) {
         tile_post(scan, unposted, tile_number(scan, unposted, v, edges, table, entries, state, true));
         look = true;
     }
-    if (get_local_id(0) != 0 || number + 1 != v->tile_count) return;
-    state[VOLUME_LOW] = tile_before(scan.tiles, number + 1, TILE_VERTICES);
-    state[VOLUME_HIGH] = tile_before(scan.tiles, number + 1, TILE_TRIANGLES);
+    if (get_local_id(0) != 0 || tile_index + 1 != v->tile_count) return;
+    state[VOLUME_LOW] = tile_before(scan.tiles, tile_index + 1, TILE_SUM_X);
+    state[VOLUME_HIGH] = tile_before(scan.tiles, tile_index + 1, TILE_SUM_Y);
 }
 
 /* Numbers the vertices in the order of their owners. */
@@ -141,16 +141,16 @@ kernel void complex_interval_number(uint spin_limit, volume_job v, global const 
     local uint2 sums[WORK_ITEMS + 1];
     const tile_scan scan = {spin_limit, scan_tiles(state, &v, SCAN_CROSSINGS), shared, sums};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0;
+    uint tile_index = 0;
     if (state[VOLUME_FULL]) return; /* entries are incomplete */
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_NUMBER], shared);
-        if (number < v.tile_count) {
-            tile_post(scan, number, tile_number(scan, number, &v, edges, table, entries, state, false));
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_NUMBER], shared);
+        if (tile_index < v.tile_count) {
+            tile_post(scan, tile_index, tile_number(scan, tile_index, &v, edges, table, entries, state, false));
             if (SETTLES_LATER)
-                own_append(&own, number, scan.tiles);
+                own_append(&own, tile_index, scan.tiles);
             else
-                number_tile_settle(scan, number, &v, edges, table, entries, state);
+                number_tile_settle(scan, tile_index, &v, edges, table, entries, state);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = scan.tiles[TILE_WORDS * n + TILE_NEXT])

@@ -21,8 +21,8 @@ typedef struct volume_list {
 } volume_list;
 
 /* The first slot of a tile. */
-inline_always uint tile_slots(uint number, global uint *state, const volume_job *v) {
-    return 4 * tile_before(scan_tiles(state, v, SCAN_CUTS), number, TILE_VERTICES);
+inline_always uint tile_slots(uint tile_index, global uint *state, const volume_job *v) {
+    return 4 * tile_before(scan_tiles(state, v, SCAN_CUTS), tile_index, TILE_SUM_X);
 }
 
 #if WORK_ITEMS == 1
@@ -53,8 +53,8 @@ inline_always uint16 words_chosen12(uint8 a, uint8 b, uint8 c, global const ucha
 #endif
 }
 
-/* The crossed edges of a cut as the list has them, and where the cache may have each. Where there is no fourth edge it
- * is 0, which no edge is, and its place is behind the others. */
+/* The crossed edges of a cut as the list has them, and where the cache may have each. Where there is no fourth edge,
+ * its two points are 0, which no edge has, and its index in the cache is RECENT_EDGES. */
 inline_always uint16 cut_edges(uint4 p, uint pattern, bool is_high, global const uchar *cases) {
     const uint8 a = (uint8)(p.x, p.x, p.x, p.y, p.y, p.z, 0, 0), b = (uint8)(p.y, p.z, p.w, p.z, p.w, p.w, 0, 0);
     const uint8 low = min(a, b), high = max(a, b);
@@ -76,11 +76,11 @@ inline_always void cut_list(uint4 points, uint pattern, bool is_high, const volu
     global ulong *edges = (global ulong *)l->edges;
     const uint16 cut = cut_edges(points, pattern, is_high, l->cases);
     const ulong4 edge = as_ulong4(cut.lo);
-    const uint4 place = cut.s89ab;
-    const uint x = place.x, y = place.y, z = place.z, w = place.w;
+    const uint4 entry = cut.s89ab;
+    const uint x = entry.x, y = entry.y, z = entry.z, w = entry.w;
     const uint4 there = (uint4)(recent->numbers[x], recent->numbers[y], recent->numbers[z], recent->numbers[w]);
     const ulong4 other = (ulong4)(recent->edges[x], recent->edges[y], recent->edges[z], recent->edges[w]);
-    const int4 known = ((there >= (uint4)at->first) & convert_int4(other == edge)) | (place == (uint4)RECENT_EDGES);
+    const int4 known = ((there >= (uint4)at->first) & convert_int4(other == edge)) | (entry == (uint4)RECENT_EDGES);
     const uint4 is_new = as_uint4(known + 1), number = at->next + sums_before(is_new);
     const uint4 found = known ? there : number;
     recent->edges[x] = edge.x, recent->edges[y] = edge.y, recent->edges[z] = edge.z, recent->edges[w] = edge.w;
@@ -109,16 +109,16 @@ inline_always void cuts_prefetch(uint n, const volume_list *l) {
     for (uint m = 0; m < CLUSTER_POINTS; m += 16) line_prefetch(l->tetrahedra + (ulong)CLUSTER_POINTS * n + m);
 }
 
-inline_always void tile_list(uint number, const volume_list *l, list_work *recent) {
-    const uint items = 1u << l->v->tile_shift, end = min((number + 1) * items, l->c->cluster_count);
-    const uint first = tile_slots(number, l->state, l->v);
+inline_always void tile_list(uint tile_index, const volume_list *l, list_work *recent) {
+    const uint items = 1u << l->v->tile_shift, end = min((tile_index + 1) * items, l->c->cluster_count);
+    const uint first = tile_slots(tile_index, l->state, l->v);
     list_state at = {first, first, first};
     recent->numbers[RECENT_EDGES] = first;
-    for (uint n = number * items; n < end; n++) {
+    for (uint n = tile_index * items; n < end; n++) {
         cuts_prefetch(n + 4, l);
         cluster_list(n, l, recent, &at);
     }
-    scan_tiles(l->state, l->v, SCAN_CROSSINGS)[TILE_WORDS * number + TILE_EDGES] = at.next - first;
+    scan_tiles(l->state, l->v, SCAN_CROSSINGS)[TILE_WORDS * tile_index + TILE_EDGES] = at.next - first;
 }
 
 #else
@@ -146,15 +146,15 @@ inline_always void own_list(uint n, uint m, uint first, const volume_list *l) {
     }
 }
 
-inline_always void tile_list(uint number, const volume_list *l, list_work *unused) {
-    const uint items = 1u << l->v->tile_shift, first = tile_slots(number, l->state, l->v);
+inline_always void tile_list(uint tile_index, const volume_list *l, list_work *unused) {
+    const uint items = 1u << l->v->tile_shift, first = tile_slots(tile_index, l->state, l->v);
     for (uint m = (uint)get_local_id(0); m < CLUSTER_TETRAHEDRA * items; m += WORK_ITEMS) {
-        const uint n = number * items + m / CLUSTER_TETRAHEDRA;
+        const uint n = tile_index * items + m / CLUSTER_TETRAHEDRA;
         if (n < l->c->cluster_count) own_list(n, m % CLUSTER_TETRAHEDRA, first, l);
     }
     if (get_local_id(0) == 0)
-        scan_tiles(l->state, l->v, SCAN_CROSSINGS)[TILE_WORDS * number + TILE_EDGES] =
-            tile_slots(number + 1, l->state, l->v) - first;
+        scan_tiles(l->state, l->v, SCAN_CROSSINGS)[TILE_WORDS * tile_index + TILE_EDGES] =
+            tile_slots(tile_index + 1, l->state, l->v) - first;
 }
 
 #endif
@@ -172,14 +172,14 @@ kernel void complex_interval_list(complex_job low, volume_job v, global const ui
     local uint shared[4];
     const volume_list l = {&low, &v, tetrahedra + low.tetrahedron_offset, cases, clusters, edges, slots, state};
     list_work work;
-    uint number = 0;
+    uint tile_index = 0;
 #if WORK_ITEMS == 1
     for (uint n = 0; n <= RECENT_EDGES; n++) work.edges[n] = 0, work.numbers[n] = 0;
 #endif
     table_clear(table, v.table_mask + 1);
-    while (number < v.tile_count) {
-        number = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_LIST], shared);
-        if (number < v.tile_count) tile_list(number, &l, &work);
+    while (tile_index < v.tile_count) {
+        tile_index = ticket_take(&state[VOLUME_TICKETS + KERNEL_VOLUME_LIST], shared);
+        if (tile_index < v.tile_count) tile_list(tile_index, &l, &work);
     }
 }
 

@@ -42,12 +42,13 @@ enum { WHOLE_CORNERS = 12 };
 
 typedef struct active_cell {
     slab_u32 points[WHOLE_CORNERS];
-    slab_u32 pattern; /* bit n: corner n is inside; from bit 16 on the cell's code. Then the host puts the case's number
-                         in its place. */
-    slab_u32
-        triangle;    /* its number in the list of cells; then the index of its first triangle, from its tile's first */
+    /* bit n: corner n is inside; from bit 16 on the cell's code. From the host on: the number of the cell's case */
+    slab_u32 pattern;
+    /* the cell's index in the grid. From complex_number on: its first triangle, counted from its tile's first */
+    slab_u32 triangle;
     slab_u32 vertex; /* as above */
-    slab_u32 owned;  /* first of all bit n: candidate n is a diagonal that another cell has as its edge */
+    /* at first bit n: candidate n is a diagonal that another cell has as its edge; then as above */
+    slab_u32 owned;
 } active_cell;
 
 /* The case of a cell begins at CASE_UNIT bytes times its number: how many candidates and triangles it has, a byte each;
@@ -72,7 +73,7 @@ enum { SHAPE_CORNERS, SHAPE_ORDER, SHAPE_BYTES = 16, SHAPE_CODES = 128, CODE_MIR
  * triangles' corners, as slots of edges. Derived from the tables of host/lib/tables/tables.h. */
 enum { CASE_EDGES, CASE_TRIANGLES, CASE_ENDS, CASE_CORNERS = CASE_ENDS + 8, CASE_BYTES = CASE_CORNERS + 6 };
 
-/* A face on the border of the complex, counter-clockwise seen from outside, by the places of its points in the list of
+/* A face on the border of the complex, counter-clockwise seen from outside, by the indices of its points in the list of
  * the border's. A quadrilateral begins with its smallest point, which its diagonal goes through. Else the last point is
  * CAP_TRIANGLE; or CAP_HALF: the face is half a quadrilateral, and begins with the two points of its diagonal. */
 typedef struct cap_face {

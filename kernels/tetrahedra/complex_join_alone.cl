@@ -102,14 +102,14 @@ inline_always void edges_enter(const complex_job *c, uint wait, global const act
 kernel void complex_join(complex_job c, global const active_item *active, global const uchar *cases, global uint *state,
                          global uint *table, global uint *entries) {
     local uint shared[4];
-    uint number = 0;
+    uint tile_index = 0;
     edge_work work;
     for (uint n = 0; n < RECENT_EDGES; n++) work.points[n] = 0;
     work.hashed = work.prefetched = work.entered = 0;
-    while (number < c.active_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
-        uint first = number * c.tile_actives, count = 0;
-        if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
+    while (tile_index < c.active_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + KERNEL_JOIN], shared);
+        uint first = tile_index * c.tile_actives, count = 0;
+        if (tile_index < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
         for (uint n = 0; n < count; n++) {
             edges_hash(&c, first + n, active, cases, table, entries, &work);
             edges_enter(&c, EDGE_WAIT, active, cases, table, entries, &work, &state[HEAD_FULL]);

@@ -29,12 +29,12 @@ inline_always uint triangles_of(uint a, global const active_item *active, global
 }
 
 /* Counts the vertices of a tile of active items; stores numbers and owned edges unless `out` is NULL. */
-inline_always uint2 tile_number(tile_tools tools, uint number, global const active_item *active,
+inline_always uint2 tile_number(tile_tools tools, uint tile_index, global const active_item *active,
                                 global const uchar *cases, global const uint *table, global const uint *entries,
                                 global active_item *out) {
     uint2 running = 0;
     for (uint start = 0; start < tools.c->tile_actives; start += WORK_ITEMS) {
-        uint a = number * tools.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
+        uint a = tile_index * tools.c->tile_actives + start + (uint)get_local_id(0), owned = 0;
         bool exists = start + (uint)get_local_id(0) < tools.c->tile_actives && a < tools.c->active_count;
         if (WORK_ITEMS == 1 && a + FETCH_AHEAD < tools.c->active_count)
             for (uint n = 0; n < 4; n++) line_prefetch(table + entries[slot_of(tools.c, a + FETCH_AHEAD, n)]);
@@ -47,18 +47,18 @@ inline_always uint2 tile_number(tile_tools tools, uint number, global const acti
     return running;
 }
 
-inline_always void active_tile_settle(tile_tools tools, uint number, global const active_item *active,
+inline_always void active_tile_settle(tile_tools tools, uint tile_index, global const active_item *active,
                                       global const uchar *cases, global const uint *table, global const uint *entries,
                                       global uint *head) {
     uint unposted;
     bool look = false;
-    while (!tile_settle(tools.scan, number, look, &unposted)) {
+    while (!tile_settle(tools.scan, tile_index, look, &unposted)) {
         tile_post(tools.scan, unposted, tile_number(tools, unposted, active, cases, table, entries, NULL));
         look = true;
     }
-    if (get_local_id(0) == 0 && number + 1 == tools.c->active_tiles) {
-        head[HEAD_VERTICES] = tile_before(tools.scan.tiles, number + 1, TILE_VERTICES);
-        if (WHOLE) head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, number + 1, TILE_TRIANGLES);
+    if (get_local_id(0) == 0 && tile_index + 1 == tools.c->active_tiles) {
+        head[HEAD_VERTICES] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_X);
+        if (WHOLE) head[HEAD_TRIANGLES] = tile_before(tools.scan.tiles, tile_index + 1, TILE_SUM_Y);
     }
 }
 
@@ -69,16 +69,16 @@ kernel void complex_number(complex_job c, global active_item *active, global con
     local uint2 sums[WORK_ITEMS + 1];
     tile_tools tools = {&c, {c.spin_limit, tiles, shared, sums}};
     own_tiles own = {NO_TILE, NO_TILE};
-    uint number = 0;
+    uint tile_index = 0;
     if ((WORK_ITEMS == 1 || WHOLE) && state[HEAD_FULL]) return; /* entries are incomplete */
-    while (number < c.active_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
-        if (number < c.active_tiles) {
-            tile_post(tools.scan, number, tile_number(tools, number, active, cases, table, entries, active));
+    while (tile_index < c.active_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + KERNEL_NUMBER], shared);
+        if (tile_index < c.active_tiles) {
+            tile_post(tools.scan, tile_index, tile_number(tools, tile_index, active, cases, table, entries, active));
             if (SETTLES_LATER)
-                own_append(&own, number, tiles);
+                own_append(&own, tile_index, tiles);
             else
-                active_tile_settle(tools, number, active, cases, table, entries, state);
+                active_tile_settle(tools, tile_index, active, cases, table, entries, state);
         }
     }
     for (uint n = own.first; SETTLES_LATER && n != NO_TILE; n = tiles[TILE_WORDS * n + TILE_NEXT])

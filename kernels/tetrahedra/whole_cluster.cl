@@ -19,8 +19,8 @@ inline_always global const uchar *shape_of(uint code, complex_arrays in) {
     return in.shapes + SHAPE_BYTES * (code & (SHAPE_CODES - 1));
 }
 
-/* The words of a cell's points. */
-inline_always global const uint *cell_words(const complex_job *c, uint cell, complex_arrays in) {
+/* The numbers of a cell's points, one or two 32-bit words each. */
+inline_always global const uint *cell_points_at(const complex_job *c, uint cell, complex_arrays in) {
     const ulong point = c->cell_points ? (ulong)c->cell_points * cell : in.begins[cell];
     return in.tetrahedra + point * c->word_step;
 }
@@ -34,7 +34,7 @@ inline_always bool cells_valid(const complex_job *c, uint n, complex_arrays in) 
     const uint first = n * CLUSTER_CELLS, end = first + cluster_size(c, n);
     bool invalid = false;
     for (uint cell = first; cell < end; cell++) {
-        global const uint *words = cell_words(c, cell, in);
+        global const uint *words = cell_points_at(c, cell, in);
         const uint corners = shape_of(cell_code(c, cell, in), in)[SHAPE_CORNERS];
         for (uint m = 0; m < corners; m++) invalid |= point_invalid(c, words + m * c->word_step);
     }
@@ -45,7 +45,7 @@ inline_always brick_range cells_range(const complex_job *c, uint n, complex_arra
     const uint first = n * CLUSTER_CELLS, end = first + cluster_size(c, n);
     BITS low = (BITS) ~(BITS)0, high = 0;
     for (uint cell = first; cell < end; cell++) {
-        global const uint *words = cell_words(c, cell, in);
+        global const uint *words = cell_points_at(c, cell, in);
         const uint corners = shape_of(cell_code(c, cell, in), in)[SHAPE_CORNERS];
         for (uint m = 0; m < corners; m++) {
             const BITS key = key_of(in.samples[words[m * c->word_step]], &c->test);
@@ -81,7 +81,7 @@ inline_always cluster_report cells_count(const complex_job *c, uint n, complex_a
     ulong mask = 0;
     for (uint m = 0; m < size; m++) {
         global const uchar *shape = shape_of(cell_code(c, first + m, in), in);
-        mask |= (ulong)(cell_pattern(c, cell_words(c, first + m, in), shape, in.samples) != 0) << m;
+        mask |= (ulong)(cell_pattern(c, cell_points_at(c, first + m, in), shape, in.samples) != 0) << m;
     }
     return cells_report(mask);
 }

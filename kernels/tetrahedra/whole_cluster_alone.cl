@@ -88,7 +88,7 @@ inline_always cluster_report cluster_count(const complex_job *c, uint n, complex
 
 /* Prefetches the points of a cluster. */
 inline_always void points_prefetch(const complex_job *c, uint n, complex_arrays in) {
-    global const uint *words = cell_words(c, n * CLUSTER_CELLS, in);
+    global const uint *words = cell_points_at(c, n * CLUSTER_CELLS, in);
     const uint count = CLUSTER_CELLS * (c->cell_points ? c->cell_points : 8) * c->word_step;
     for (uint m = 0; m < count; m += 16) line_prefetch(words + m);
 }
@@ -96,7 +96,7 @@ inline_always void points_prefetch(const complex_job *c, uint n, complex_arrays 
 /* Prefetches samples of a cluster whose points are in the cache: those of its first cell, as the samples of the others
  * lie close to them. */
 inline_always void cluster_prefetch(const complex_job *c, uint n, complex_arrays in) {
-    global const uint *words = cell_words(c, n * CLUSTER_CELLS, in);
+    global const uint *words = cell_points_at(c, n * CLUSTER_CELLS, in);
     const uint count = shape_of(cell_code(c, n * CLUSTER_CELLS, in), in)[SHAPE_CORNERS];
     for (uint m = 0; m < count; m++) line_prefetch(in.samples + words[m * c->word_step]);
 }

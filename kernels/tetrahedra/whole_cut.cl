@@ -36,12 +36,12 @@ inline_always uint diagonals_find(const complex_job *c, uint a, global const act
 kernel void whole_cut(complex_job c, global active_cell *active, global const uchar *cases, global uint *state,
                       global uint *table, global uint *entries) {
     local uint shared[4];
-    uint number = 0, cut = 0;
+    uint tile_index = 0, cut = 0;
     if (state[HEAD_FULL]) return; /* the table is incomplete */
-    while (number < c.active_tiles) {
-        number = ticket_take(&state[HEAD_TICKETS + KERNEL_CUT], shared);
-        uint first = number * c.tile_actives, count = 0;
-        if (number < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
+    while (tile_index < c.active_tiles) {
+        tile_index = ticket_take(&state[HEAD_TICKETS + KERNEL_CUT], shared);
+        uint first = tile_index * c.tile_actives, count = 0;
+        if (tile_index < c.active_tiles) count = min(c.tile_actives, c.active_count - first);
         for (uint n = (uint)get_local_id(0); n < count; n += WORK_ITEMS) {
             if (WORK_ITEMS == 1 && n + FETCH_AHEAD / 2 < count)
                 diagonals_prefetch(&c, first + n + FETCH_AHEAD / 2, active, cases, table);

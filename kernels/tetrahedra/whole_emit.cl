@@ -38,8 +38,8 @@ inline_always void item_emit(const complex_job *c, uint a, global const BITS *sa
                              global const uint *table, global const uint *entries, global float *positions,
                              global uint *triangles) {
     global const uchar *row = cell_case(active + a, cases), *corners = row + WHOLE_ENDS + row[WHOLE_CANDIDATES];
-    const uint tile = a / c->tile_actives, vertex = tile_before(tiles, tile, TILE_VERTICES) + active[a].vertex;
-    global uint *out = triangles + 3ul * (tile_before(tiles, tile, TILE_TRIANGLES) + active[a].triangle);
+    const uint tile = a / c->tile_actives, vertex = tile_before(tiles, tile, TILE_SUM_X) + active[a].vertex;
+    global uint *out = triangles + 3ul * (tile_before(tiles, tile, TILE_SUM_Y) + active[a].triangle);
     uint own = 0;
     for (uint rest = active[a].owned; rest; rest &= rest - 1, own++)
         edge_vertex(c, candidate_points(active + a, lowest_bit(rest), cases), samples, points,

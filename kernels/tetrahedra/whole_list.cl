@@ -11,11 +11,11 @@ inline_always void cluster_cells_list(const complex_job *c, uint n, complex_arra
                                       global const cluster_state *clusters, global const uint *tiles,
                                       global active_cell *out) {
     const cluster_state cluster = clusters[n];
-    out += tile_before(tiles, n / c->tile_clusters, TILE_VERTICES) + cluster.active_before;
+    out += tile_before(tiles, n / c->tile_clusters, TILE_SUM_X) + cluster.active_before;
     for (ulong rest = cluster.patterns; rest; rest &= rest - 1, out++) {
         const uint cell = n * CLUSTER_CELLS + lowest_bit(rest), code = cell_code(c, cell, in);
         global const uchar *shape = shape_of(code, in);
-        global const uint *words = cell_words(c, cell, in);
+        global const uint *words = cell_points_at(c, cell, in);
         for (uint m = 0; m < WHOLE_CORNERS; m++)
             out->points[m] = m < shape[SHAPE_CORNERS] ? words[shape[SHAPE_ORDER + m] * c->word_step] : 0;
         out->pattern = cell_pattern(c, words, shape, in.samples) | code << 16;
@@ -28,7 +28,7 @@ inline_always void cluster_cells_list(const complex_job *c, uint n, complex_arra
 inline_always void cells_prefetch(const complex_job *c, uint n, complex_arrays in,
                                   global const cluster_state *clusters) {
     for (ulong rest = clusters[n].patterns; rest; rest &= rest - 1)
-        line_prefetch(cell_words(c, n * CLUSTER_CELLS + lowest_bit(rest), in));
+        line_prefetch(cell_points_at(c, n * CLUSTER_CELLS + lowest_bit(rest), in));
 }
 
 /* Lists the active cells. */

@@ -4,7 +4,7 @@
     test_readme.py SOURCE BUILD TOOL
 
 README.md: it is short, its two commands are those of .ci/run, its example prints what it shows. host/tool: options and
-fields are those of --help, keys those of --json. host/read: endings are known. host: rooms include what they may, and
+fields are those of --help, keys those of --json. host/read: endings are known. host: folders include what they may, and
 files that are named are there. kernels: every file in one line. tests: tests that are named are there, tables are made of
 the committed results. All: what links lead to is there. C examples are compiled and run by test_install.py.
 """
@@ -203,7 +203,7 @@ def test_endings(text, tool):
 # ------------------------------------------------------------------------------------------------------------ host
 
 def room_of(path, rooms):
-    """The innermost room that a file of the sources lies in."""
+    """The innermost folder of the table that a file of the sources lies in."""
     return max((room for room in rooms if path.is_relative_to(room)), key=lambda room: len(room.parts), default=None)
 
 
@@ -226,12 +226,12 @@ def circle_in(includes):
 
 
 def test_rooms(source, text):
-    """No file includes what the table does not allow; no rooms, and no files of the tool, include each other."""
+    """No file includes what the table does not allow; no folders, and no files of the tool, include each other."""
     rows = re.findall(r"^\| `((?:host/|kernels)[\w/]*)` \| .* \| (.*?) ?\|$", text, re.MULTILINE)
     rooms = {source / name: allowed for name, allowed in rows}
-    expect(len(rooms) >= 15, f"host/README.md: only {len(rooms)} rooms")
+    expect(len(rooms) >= 15, f"host/README.md: only {len(rooms)} folders")
     folders = {path.parent for path in (source / "host").rglob("*.c")} - rooms.keys()
-    expect(not folders, f"host/README.md: these rooms are left out: {sorted(map(str, folders))}")
+    expect(not folders, f"host/README.md: these folders are left out: {sorted(map(str, folders))}")
     places = [*rooms, source / "kernels"]
     over_rooms, over_files = {}, {}
     for path in sorted((source / "host").rglob("*.[ch]")):
@@ -247,7 +247,7 @@ def test_rooms(source, text):
             wanted = f"`{other.relative_to(source)}`"
             whole = "all of `host/lib`" in rooms[own] and other.is_relative_to(source / "host" / "lib")
             expect(wanted in rooms[own] or whole, f"{path.relative_to(source)} includes {name} of {wanted}, which "
-                                                  "host/README.md does not allow its room")
+                                                  "host/README.md does not allow its folder")
     expect(sum(map(len, over_rooms.values())) > 30, f"only {over_rooms} found")
     for what, includes in ("rooms", over_rooms), ("files of host/tool", over_files):
         circle = circle_in(includes)

@@ -356,7 +356,7 @@ static void test_pixels(void) {
     picture_release(&p);
 }
 
-/* A part of the mesh with an origin of its own, far from zero: the same places, and so the same pixels. */
+/* A part of the mesh with an origin of its own, far from zero: the same positions, and so the same pixels. */
 static void test_parts(void) {
     static test_mesh two;
     make_sphere(&two, 0, 0, 0, 1);
@@ -461,12 +461,12 @@ static void expect_grey(const picture *p, int x, int y, double value, const char
 static void test_slices(void) {
     static float samples[NX * NY * NZ];
     static uint8_t blanked[NX * NY * NZ];
-    double places[3][NX];
+    double positions[3][NX];
     sliced_volume v = {
         .type = TC_F32, .samples = samples, .count = {NX, NY, NZ}, .stride = {1, NX, NX * NY}, .white = 8};
     for (int axis = 0; axis < 3; axis++) {
-        for (int n = 0; n < NX; n++) places[axis][n] = n;
-        v.places[axis] = places[axis];
+        for (int n = 0; n < NX; n++) positions[axis][n] = n;
+        v.positions[axis] = positions[axis];
     }
     for (int n = 0; n < NX * NY * NZ; n++) samples[n] = (float)(n % NX);
     picture p;
@@ -512,11 +512,11 @@ static void test_slices(void) {
 
 /* An axis with unequal steps; volumes of one plane; doubles as far apart as can be. */
 static void test_odd_slices(void) {
-    const double places[3][3] = {{0, 1, 10}, {0, 5, 10}, {0, 0, 0}}, samples[9] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
+    const double positions[3][3] = {{0, 1, 10}, {0, 5, 10}, {0, 0, 0}}, samples[9] = {0, 1, 1, 0, 1, 1, 0, 1, 1};
     const double wide[2] = {-1.5e308, 1.5e308};
     sliced_volume v = {.type = TC_F64, .samples = samples, .count = {3, 3, 1}, .stride = {1, 3, 9}, .white = 1};
     picture p;
-    for (int axis = 0; axis < 3; axis++) v.places[axis] = places[axis];
+    for (int axis = 0; axis < 3; axis++) v.positions[axis] = positions[axis];
     EXPECT(!picture_make(&p, 400, 200) && !slice_picture(&v, NULL, 0, &p), "not drawn");
     /* margins of 8; 10 + 10 across, 10 down, at 17.6 pixels: 176 each */
     const int left = (400 - 2 * 176 - 8) / 2, top = (200 - 176 - 1 - 8) / 2;
@@ -525,7 +525,7 @@ static void test_odd_slices(void) {
     picture_release(&p);
     v = (sliced_volume){
         .type = TC_F64, .samples = wide, .count = {2, 1, 1}, .stride = {1, 2, 2}, .black = wide[0], .white = wide[1]};
-    for (int axis = 0; axis < 3; axis++) v.places[axis] = places[axis];
+    for (int axis = 0; axis < 3; axis++) v.positions[axis] = positions[axis];
     EXPECT(!picture_make(&p, 400, 200) && !slice_picture(&v, NULL, 0, &p), "not drawn");
     expect_grey(&p, 200, (200 - 1 - 1 - 8) / 2, 255 * (193.5 / 376), "half-way between the least and the greatest");
     picture_release(&p);

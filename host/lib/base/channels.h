@@ -10,7 +10,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-/* Per vertex, of each channel; per triangle; of a label map's triangle, its two labels. */
+/* Bytes of a channel per vertex, of a triangle's indices, and of a triangle's two labels in a label map. */
 enum { CHANNEL_BYTES = 12, TRIANGLE_BYTES = 12, LABELS_BYTES = 8 };
 
 /* Those that are made: bit n is channel n. */

@@ -73,7 +73,7 @@ static void edges_cross(const tc_grid *grid, double isovalue, const edge_batch *
         gather_f32(grid->type, grid->samples, 1, 0, batch->high, count, b32);
         crossings_f32(a32, b32, (float)isovalue, count, t);
     }
-    for (uint32_t n = 0; n < count && batch->has_places; n++) t[n] = batch->low[n] == batch->high[n] ? 0 : t[n];
+    for (uint32_t n = 0; n < count && batch->has_at_samples; n++) t[n] = batch->low[n] == batch->high[n] ? 0 : t[n];
 }
 
 void carry_crossings(const tc_grid *grid, double isovalue, const edge_batch *batch, float t[BATCH_EDGES]) {
@@ -84,8 +84,8 @@ void carry_batch(const carry *c, const tc_grid *grid, double isovalue, edge_batc
     const tc_field *f = c->field;
     if (!batch->count) return;
     const int components = f->components;
-    const uint64_t room = batch->vertex < c->room ? c->room - batch->vertex : 0;
-    const uint32_t count = batch->count < room ? batch->count : (uint32_t)room;
+    const uint64_t capacity = batch->vertex < c->capacity ? c->capacity - batch->vertex : 0;
+    const uint32_t count = batch->count < capacity ? batch->count : (uint32_t)capacity;
     float *out = c->out + batch->vertex * (uint64_t)components, t[BATCH_EDGES], a32[BATCH_EDGES];
     double a[BATCH_EDGES], b[BATCH_EDGES];
     edges_cross(grid, isovalue, batch, count, t);

@@ -14,7 +14,7 @@
 typedef struct carry {
     const tc_field *field;
     float *out;
-    uint64_t room; /* vertices */
+    uint64_t capacity; /* vertices */
 } carry;
 
 enum { BATCH_EDGES = 1024 };
@@ -23,7 +23,7 @@ enum { BATCH_EDGES = 1024 };
 typedef struct edge_batch {
     uint64_t vertex;
     uint32_t count;
-    bool has_places; /* some of the edges are a sample, both ends: the vertex is in its place */
+    bool has_at_samples;                         /* some of the edges are a sample, both ends: the vertex lies at it */
     int64_t low[BATCH_EDGES], high[BATCH_EDGES]; /* the samples at the ends, the lower number first */
 } edge_batch;
 

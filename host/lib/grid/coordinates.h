@@ -3,11 +3,11 @@
  * which way round the grid is
  *
  * Winding has one sign per grid: that of the Jacobian's integral over its cubes. Over one cube that is the flux of
- * position / 3 through its six faces, a face's being the mean of its two triangulations'; faces between two cubes that
- * count cancel, so only those at the end of what counts are visited. Cubes that are left out, being blanked or having a
- * missing corner, do not count (where samples are in a cl_mem: a blanked corner, or one that is nowhere). The sum is
- * made in double, in one order. Where it is 0 the grid counts as not mirrored. Of a rectilinear grid the sign is that
- * of the product of its axes' directions, from the first position to the last.
+ * position / 3 through its six faces, a face's being the mean of its two triangulations'. Where two cubes that both
+ * count meet, their faces cancel, so only faces with one such cube are visited. Cubes that are left out, being blanked
+ * or having a missing corner, do not count (where samples are in a cl_mem: a blanked corner, or one that is nowhere).
+ * The sum is made in double, in one order. Where it is 0 the grid counts as not mirrored. Of a rectilinear grid the
+ * sign is that of the product of its axes' directions, from the first position to the last.
  */
 #ifndef COORDINATES_H
 #define COORDINATES_H

@@ -237,7 +237,7 @@ tc_status origin_check(int has_origin, const double origin[3]) {
 }
 
 /* Where samples lie. */
-static tc_status place_take(const tc_grid_options *o, tc_grid *grid) {
+static tc_status positions_take(const tc_grid_options *o, tc_grid *grid) {
     for (int axis = 0; axis < 3; axis++) {
         grid->dims[axis] = o->dims[axis];
         grid->first[axis] = o->first_index[axis];
@@ -264,7 +264,7 @@ static tc_status whole_take(const tc_grid_options *given, const tc_grid *grid, t
     if (!given) return TC_OK;
     tc_status status = struct_copy_in(&o, sizeof o, given, "whole grid");
     if (!status) status = grid_sizes_check(&o);
-    if (!status) status = place_take(&o, whole);
+    if (!status) status = positions_take(&o, whole);
     if (status) return status;
     int is_within = 1;
     for (int axis = 0; axis < 3 && grid->kind == GRID_UNIFORM; axis++)
@@ -322,7 +322,7 @@ tc_status grid_describe(const tc_grid_options *o, tc_grid *grid) {
     grid->has_nodata = o->has_nodata != 0;
     /* 0.1 is no float32; samples have the nearest float32. */
     grid->nodata = o->type == TC_F32 ? (double)(float)o->nodata : o->nodata;
-    status = place_take(o, grid);
+    status = positions_take(o, grid);
     if (!status) status = whole_take(o->whole, grid, &whole);
     if (!status) status = own_take(o, &whole, grid);
     if (status) return status;

@@ -20,9 +20,9 @@ struct complex_grid;
 /* Where positions come from; the kernels know it as GRID. */
 typedef enum grid_kind { GRID_UNIFORM = 0, GRID_RECTILINEAR = 1, GRID_CURVILINEAR = 2 } grid_kind;
 
-/* Planes of a piece beside those that it owns: for gradients and missing cells one before, in bricks of their own; for
- * the vertices that its last triangles use two behind. Whether a sample is snapped depends on samples up to five steps
- * away, also of the two planes behind. */
+/* Planes of a piece beside those that it owns. Before: gradients and missing cells need one plane; a whole layer of
+ * bricks is taken, so that bricks stay whole. Behind: two, for the vertices that its last triangles use. Whether a
+ * sample is snapped depends on samples up to five steps away, also of the two planes behind. */
 enum { PIECE_BEFORE = BRICK_PLANES, PIECE_BEHIND = 2, PIECE_SNAP = 2 * BRICK_PLANES };
 
 /* The seams of a piece, during tc_count_piece and tc_extract_piece; else NULL. */

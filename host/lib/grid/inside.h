@@ -2,9 +2,9 @@
  * inside.h - "sample >= isovalue" as a test on bit patterns, exact for every sample type
  *
  * The isovalue is a double. Samples compare with the smallest value of their type that is >= it. The patterns that are
- * inside form one interval modulo 2^width, so that (bits - low) <= span, unsigned, decides: integers count up from low;
- * floats above 0 order like integers; from a negative float f or 0 on, all patterns from +0 to +infinity and from -0
- * down to f are inside, which is one interval again.
+ * inside form one run of unsigned integers modulo 2^width, so that (bits - low) <= span, unsigned, decides: integers
+ * count up from low; floats above 0 order like integers; from a negative float f or 0 on, all patterns from +0 to
+ * +infinity and from -0 down to f are inside, which is one run again.
  */
 #ifndef INSIDE_H
 #define INSIDE_H

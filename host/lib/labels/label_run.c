@@ -175,8 +175,8 @@ static tc_status totals_read(label_run *r, const label_job *job, label_slab *par
     tc_status status = read_words(r, 0, LABEL_HEAD_WORDS, r->head);
     if (!status) status = read_words(r, last, TILE_WORDS, sums);
     if (status) return status;
-    part->vertices = sums[TILE_VERTICES] & (UINT32_MAX >> 2);
-    part->triangles = sums[TILE_TRIANGLES] & (UINT32_MAX >> 2);
+    part->vertices = sums[TILE_SUM_X] & (UINT32_MAX >> 2);
+    part->triangles = sums[TILE_SUM_Y] & (UINT32_MAX >> 2);
     part->cells = r->head[LABEL_ACTIVE_CELLS];
     return TC_OK;
 }

@@ -57,6 +57,6 @@ void label_table_make(bool mirrored, uint32_t *words) {
         for (unsigned v = 0; v < LABEL_VERTICES; v++) map[v] = vertex_word(tables.owners[parity][t][v]);
         for (unsigned c = 0; c < 4; c++) map[LABEL_MAP_CORNERS] |= (uint32_t)tetrahedron_corners[parity][t][c] << 4 * c;
     }
-    memcpy(words + LABEL_PLACES, tables.offsets, sizeof tables.offsets);
+    memcpy(words + LABEL_POSITIONS, tables.offsets, sizeof tables.offsets);
     cubes_make(mirrored, words + LABEL_CUBES);
 }

@@ -20,7 +20,7 @@ typedef struct vertex_state {
                      are the same set, or collide, with a probability of 2^-64: then the vertex is smoothed as an
                      inner one, on every machine */
     uint32_t count; /* of its triangles */
-    uint32_t place; /* where its next entry goes */
+    uint32_t next;  /* the index of its next entry */
 } vertex_state;
 
 _Static_assert(sizeof(vertex_state) == NEIGHBOUR_STATE_BYTES, "the caller has room for it");
@@ -83,8 +83,8 @@ static void corner_count(vertex_state *state, uint32_t *entries, uint32_t after,
 /* A vertex whose followers are those before it lies within a surface: its neighbours are its followers. Other vertices
  * lie on junctions or borders, and need both. */
 static void corner_fill(vertex_state *state, uint32_t *entries, uint32_t after, uint32_t before) {
-    entries[state->place++] = after;
-    if (state->sum) entries[state->place++] = before;
+    entries[state->next++] = after;
+    if (state->sum) entries[state->next++] = before;
 }
 
 static void sort(uint32_t *values, uint32_t count) {
@@ -114,7 +114,7 @@ static uint8_t neighbours_choose(uint32_t *entries, uint32_t count, uint8_t *on_
     return (uint8_t)kept;
 }
 
-/* Counts, and sets starts and places. */
+/* Counts, and sets where the entries of each begin. */
 static void ranges_count(void *shared) {
     search *s = shared;
     for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists->range_count;) {
@@ -123,8 +123,8 @@ static void ranges_count(void *shared) {
         memset(states, 0, (size_t)(r->end - r->first) * sizeof *states);
         corners_visit(s, r, corner_count);
         for (uint32_t v = 0; v < r->end - r->first; v++) {
-            r->starts[v] = states[v].place = (uint32_t)r->room;
-            r->room += states[v].sum ? UINT64_C(2) * states[v].count : states[v].count;
+            r->starts[v] = states[v].next = (uint32_t)r->capacity;
+            r->capacity += states[v].sum ? UINT64_C(2) * states[v].count : states[v].count;
         }
     }
 }
@@ -168,16 +168,16 @@ static void ranges_make(uint64_t vertices, void *arrays, neighbour_lists *out) {
 
 /* False without memory, or numbers of 32 bits. */
 static bool lists_reserve(neighbour_lists *lists, host_block *block) {
-    uint64_t room = 0;
+    uint64_t capacity = 0;
     for (uint32_t n = 0; n < lists->range_count; n++) {
-        if (lists->ranges[n].room > UINT32_MAX) return false;
-        room += lists->ranges[n].room;
+        if (lists->ranges[n].capacity > UINT32_MAX) return false;
+        capacity += lists->ranges[n].capacity;
     }
-    if (host_block_reserve(block, (room + NEIGHBOURS_AHEAD + UINT8_MAX) * sizeof(uint32_t))) return false;
+    if (host_block_reserve(block, (capacity + NEIGHBOURS_AHEAD + UINT8_MAX) * sizeof(uint32_t))) return false;
     uint32_t *vertices = block->memory;
     for (uint32_t n = 0; n < lists->range_count; n++) {
         lists->ranges[n].vertices = vertices;
-        vertices += lists->ranges[n].room;
+        vertices += lists->ranges[n].capacity;
     }
     return true;
 }

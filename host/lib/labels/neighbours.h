@@ -10,10 +10,10 @@
 
 enum { NEIGHBOUR_RANGES = 32 };
 
-/* Arrays are of the range's vertices. */
+/* Vertices that follow each other, and arrays with an element for each. */
 typedef struct neighbour_range {
     uint32_t first, end; /* vertices */
-    uint64_t room;       /* of the lists */
+    uint64_t capacity;   /* of the lists */
     uint32_t *starts;    /* where the neighbours of each begin */
     uint32_t *vertices;  /* the neighbours, in an order that follows from the mesh */
     uint8_t *counts;     /* how many */

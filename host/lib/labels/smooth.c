@@ -1,7 +1,7 @@
 /*
  * Each sweep reads only old positions and writes new ones, so neither threads nor the order of vertices change a bit.
- * The box of a vertex lies along the grid's axes, around the place where it was made. Three arrays are enough: the
- * places, a second one, and the mesh's own positions, to which the last sweep leads. Positions are read as four
+ * The box of a vertex lies along the grid's axes, around the position where it was made. Three arrays are enough: these
+ * positions, a second one, and the mesh's own positions, to which the last sweep leads. Positions are read as four
  * components, of which the last means nothing.
  */
 #include "labels/smooth.h"
@@ -35,7 +35,7 @@ typedef struct smoothing {
     bool is_straight;                  /* the grid's axes are those of space */
     vector most;                       /* then: how far a vertex may move */
     float shares[UINT8_MAX + 1];       /* of each of n neighbours */
-    float *mesh, *places, *second;     /* the mesh's own positions; where vertices were made */
+    float *mesh, *made, *second;       /* the mesh's own positions; where vertices were made */
     const float *from;
     float *to;
     _Atomic uint64_t next;
@@ -67,13 +67,13 @@ static vector vector_load(const float *from, uint64_t vertex) {
 }
 
 /* Vertices at the end of a mesh stay in the planes of the grid's border that they lie in. */
-static uint8_t fixed_axes(const smoothing *s, const float place[3]) {
+static uint8_t fixed_axes(const smoothing *s, const float made[3]) {
     const tc_grid *grid = s->v->grid;
     uint8_t fixed = 0;
     for (int axis = 0; axis < 3; axis++) {
         double index = 0;
         for (int r = 0; r < 3; r++)
-            index += (double)s->inverse[axis][r] * ((double)place[r] - (double)grid->matrix[4 * r + 3]);
+            index += (double)s->inverse[axis][r] * ((double)made[r] - (double)grid->matrix[4 * r + 3]);
         index -= (double)(grid->first[axis] - s->v->before);
         if (fabs(index) < 0.1 || fabs(index - (double)(s->v->dims[axis] - 1)) < 0.1) fixed |= (uint8_t)(1 << axis);
     }
@@ -85,7 +85,7 @@ static void ranges_begin(void *shared) {
     smoothing *s = shared;
     for (uint64_t n; (n = atomic_fetch_add(&s->next, 1)) < s->lists.range_count;) {
         const neighbour_range *r = &s->lists.ranges[n];
-        memcpy(s->places + 3 * (uint64_t)r->first, s->mesh + 3 * (uint64_t)r->first,
+        memcpy(s->made + 3 * (uint64_t)r->first, s->mesh + 3 * (uint64_t)r->first,
                (size_t)(r->end - r->first) * CHANNEL_BYTES);
         for (uint64_t v = r->first; v < r->end; v++)
             if (r->on_border[v - r->first]) r->on_border[v - r->first] = fixed_axes(s, s->mesh + 3 * v);
@@ -93,8 +93,8 @@ static void ranges_begin(void *shared) {
 }
 
 /* A vertex that may have left its box, in space or along some axes. */
-static vector constrain(const smoothing *s, uint8_t fixed, vector place, vector at) {
-    const vector moved = at - place;
+static vector constrain(const smoothing *s, uint8_t fixed, vector made, vector at) {
+    const vector moved = at - made;
     float index[3];
     bool is_out = false;
     for (int axis = 0; axis < 3; axis++) {
@@ -105,7 +105,7 @@ static vector constrain(const smoothing *s, uint8_t fixed, vector place, vector 
     }
     for (int r = 0; r < 3 && is_out; r++) {
         const float *m = s->matrix[r];
-        at[r] = place[r] + ((m[0] * index[0] + m[1] * index[1]) + m[2] * index[2]);
+        at[r] = made[r] + ((m[0] * index[0] + m[1] * index[1]) + m[2] * index[2]);
     }
     return at;
 }
@@ -115,13 +115,13 @@ static vector lesser(vector a, vector b) {
     return (vector)(((bits)a & is) | ((bits)b & ~is));
 }
 
-static vector constrain_straight(vector most, vector place, vector at) {
-    return place - lesser(-lesser(at - place, most), most);
+static vector constrain_straight(vector most, vector made, vector at) {
+    return made - lesser(-lesser(at - made, most), most);
 }
 
 /* What the loop reads of the structures lies in variables: compilers cannot know that positions do not overwrite it. */
 static void range_move(const smoothing *s, const neighbour_range *r) {
-    const float *from = s->from, *places = s->places, *shares = s->shares;
+    const float *from = s->from, *made = s->made, *shares = s->shares;
     const uint8_t *counts = r->counts, *fixed = r->on_border;
     const uint32_t *starts = r->starts, *vertices = r->vertices, first = r->first, size = r->end - first;
     const bool is_straight = s->is_straight;
@@ -130,13 +130,13 @@ static void range_move(const smoothing *s, const neighbour_range *r) {
     for (uint32_t n = 0; n < size; n++) {
         const uint64_t vertex = first + (uint64_t)n;
         const uint32_t *neighbours = vertices + starts[n], count = counts[n];
-        const vector old = vector_load(from, vertex), place = vector_load(places, vertex);
+        const vector old = vector_load(from, vertex), start = vector_load(made, vertex);
         vector sum = {0, 0, 0, 0};
         for (uint32_t m = 0; m < PREFETCHED; m++)
             __builtin_prefetch(from + 3 * (uint64_t)neighbours[NEIGHBOURS_AHEAD + m]);
         for (uint32_t m = 0; m < count; m++) sum += vector_load(from, neighbours[m]) - old;
         vector at = old + shares[count] * sum;
-        at = is_straight && !fixed[n] ? constrain_straight(most, place, at) : constrain(s, fixed[n], place, at);
+        at = is_straight && !fixed[n] ? constrain_straight(most, start, at) : constrain(s, fixed[n], start, at);
         memcpy(to + 3 * vertex, &at, n + 1 < size ? sizeof at : CHANNEL_BYTES); /* the next one is made after it */
     }
 }
@@ -155,7 +155,7 @@ static tc_status sweep(smoothing *s, uint32_t sweeps) {
     tc_status status = TC_OK;
     on_ranges(s, ranges_begin);
     for (uint32_t n = 0; n < sweeps && !status; n++) {
-        s->from = n ? s->to : s->places;
+        s->from = n ? s->to : s->made;
         s->to = (sweeps - n) & 1 ? s->mesh : s->second;
         on_ranges(s, ranges_move);
         status = context_progress(s->v->grid->context, "smooth", (double)(n + 1) / (double)sweeps);
@@ -165,23 +165,23 @@ static tc_status sweep(smoothing *s, uint32_t sweeps) {
 
 tc_status labels_smooth(const label_volume *volume, uint32_t sweeps, tc_mesh *mesh) {
     tc_context *context = volume->grid->context;
-    host_block *room = context->smoothing;
+    host_block *blocks = context->smoothing;
     const uint64_t vertices = mesh->vertex_count;
     if (!sweeps || !vertices) return TC_OK;
     smoothing *s = calloc(1, sizeof *s);
     tc_status status = TC_OK;
-    if (!s || host_block_reserve(&room[0], 2 * (vertices * CHANNEL_BYTES + PAST * sizeof(float))))
+    if (!s || host_block_reserve(&blocks[0], 2 * (vertices * CHANNEL_BYTES + PAST * sizeof(float))))
         status = (tc_status)fail(TC_ERROR_MEMORY, "no memory to smooth the surfaces: ask for no smoothing");
-    if (!status) status = neighbours_find(mesh, room[0].memory, &room[1], &room[2], &s->lists);
+    if (!status) status = neighbours_find(mesh, blocks[0].memory, &blocks[1], &blocks[2], &s->lists);
     if (!status) {
         s->v = volume;
         s->mesh = mesh->channels[CHANNEL_POSITIONS].memory;
-        s->places = room[0].memory;
-        s->second = s->places + 3 * vertices + PAST;
+        s->made = blocks[0].memory;
+        s->second = s->made + 3 * vertices + PAST;
         invert(s);
         status = sweep(s, sweeps);
     }
     free(s);
-    for (int n = 0; n < SMOOTHING_BLOCKS; n++) host_block_idle(&room[n]);
+    for (int n = 0; n < SMOOTHING_BLOCKS; n++) host_block_idle(&blocks[n]);
     return status;
 }

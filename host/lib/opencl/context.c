@@ -22,7 +22,7 @@ tc_status context_fail(const tc_context *context, const char *what, cl_int error
 }
 
 tc_status context_progress(const tc_context *context, const char *stage, double fraction) {
-    if (!context->options.progress || context->tries) return TC_OK;
+    if (!context->options.progress || context->trial_runs) return TC_OK;
     float_environment *lent = float_environment_lend();
     int stop = context->options.progress(context->options.progress_user, stage,
                                          context->progress_begin + context->progress_share * fraction);

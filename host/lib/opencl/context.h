@@ -110,9 +110,9 @@ struct tc_context {
     cl_command_queue copies; /* made when copies first overlap kernels */
     program *programs;
     workspace work;
-    bool is_trial;                         /* kernels are built without vetting */
+    bool for_trial;                        /* made for a trial: kernels are built without vetting */
     double progress_begin, progress_share; /* of a stream: the part of it that the call under way is */
-    bool tries;                            /* a trial is running: progress is not reported (trial.c) */
+    bool trial_runs;                       /* a trial is running: progress is not reported (trial.c) */
     bool variant_changed;                  /* the other variant was taken within a call, which starts again */
     bool vetted[KERNEL_KINDS + 1];         /* kernels that may be built, and the device itself (vetting.c) */
     const struct tc_grid *workspace_grid;  /* the grid that the workspace was last used for */
@@ -150,7 +150,8 @@ uint64_t context_budget(const tc_context *context);
 bool device_makes_vertices(const tc_context *context, tc_type type);
 
 /* The size of a buffer of the caller's. TC_ERROR_ARGUMENT, naming it, where it is of another OpenCL context, no plain
- * buffer, or made with `unfit`, a flag for kernels that shall not do what they are to. */
+ * buffer, or made with the flag `unfit`: CL_MEM_WRITE_ONLY for a buffer that kernels read, CL_MEM_READ_ONLY for one
+ * that they write. */
 tc_status buffer_inspect(const tc_context *context, cl_mem memory, cl_mem_flags unfit, const char *name, size_t *bytes);
 
 /* Makes the queue of copies, in order like the other, where there is none yet. */

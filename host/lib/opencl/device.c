@@ -47,12 +47,12 @@ static tc_status platform_list_make(platform_list *list) {
 /* Appends the devices of platform p, which wakes its driver. A platform without devices is skipped. */
 static void devices_append(device_list *list, const platform_list *platforms, cl_uint p) {
     cl_device_id devices[DEVICES_MAX];
-    cl_uint device_count = 0, room = (cl_uint)(DEVICES_MAX - list->count);
-    if (room == 0) return;
-    cl_int error = cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, room, devices, &device_count);
+    cl_uint device_count = 0, capacity = (cl_uint)(DEVICES_MAX - list->count);
+    if (capacity == 0) return;
+    cl_int error = cl->GetDeviceIDs(platforms->platforms[p], CL_DEVICE_TYPE_ALL, capacity, devices, &device_count);
     if (error && error != CL_DEVICE_NOT_FOUND) list->error = error;
     if (error) return;
-    for (cl_uint d = 0; d < device_count && d < room; d++)
+    for (cl_uint d = 0; d < device_count && d < capacity; d++)
         list->devices[list->count++] = (device_choice){platforms->platforms[p], devices[d], (int)p, (int)d};
 }
 

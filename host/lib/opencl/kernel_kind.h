@@ -23,7 +23,8 @@ typedef struct kernel_kind {
 enum {
     KIND_COMPLEX = 3,
     KIND_LABELS = 4,
-    OPEN_KINDS = (5 * 8 * METHOD_COUNT * 2 * 2) << CHANNEL_COUNT, /* of open surfaces; as many of the two others */
+    OPEN_KINDS = (5 * 8 * METHOD_COUNT * 2 * 2)
+                 << CHANNEL_COUNT, /* open surfaces; closed ones and interval volumes have as many each */
     KERNEL_KINDS = 3 * OPEN_KINDS
 };
 

@@ -28,7 +28,7 @@ static void find_folder(char *folder, size_t bytes) {
 }
 
 /* Whether a folder can be made in this one. It is tried, as permissions do not reveal /proc or a full disk. */
-static bool has_room(const char *folder) {
+static bool has_space(const char *folder) {
     static const char probe[] = "/.tetracubes-XXXXXX";
     char path[PATH_MAX + sizeof probe];
     snprintf(path, sizeof path, "%s%s", folder, probe);
@@ -43,9 +43,9 @@ bool pocl_cache_is_locked(char *folder, size_t bytes) {
     while (lstat(path, &about) != 0) { /* the folder, or the first one above it that exists */
         char *slash = strrchr(path, '/');
         if (errno != ENOENT) return true;
-        if (!slash) return !has_room(".");
-        if (slash == path) return !has_room("");
+        if (!slash) return !has_space(".");
+        if (slash == path) return !has_space("");
         *slash = '\0';
     }
-    return !has_room(path);
+    return !has_space(path);
 }

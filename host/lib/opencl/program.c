@@ -264,7 +264,7 @@ tc_status program_get(tc_context *context, program_name name, kernel_kind kind, 
     if (name == PROGRAM_CLASSIFY && !kind.missing) kernels[KERNEL_CELLS] = NULL;
     const double start = clock_ms();
     tc_status status = program_make(context, p, kernels);
-    if (!context->tries) context->build_ms += clock_ms() - start; /* else the trial's time has it */
+    if (!context->trial_runs) context->build_ms += clock_ms() - start; /* else the trial's time has it */
     if (status) {
         program_release(p);
         return status;

@@ -13,8 +13,8 @@ typedef enum program_name {
     PROGRAM_SNAP,
     PROGRAM_COMPLEX,
     PROGRAM_WHOLE,
-    PROGRAM_COMPLEX_CAPS,     /* what closes surfaces of these two */
-    PROGRAM_COMPLEX_INTERVAL, /* between two surfaces of the first */
+    PROGRAM_COMPLEX_CAPS,     /* closes surfaces of PROGRAM_COMPLEX and PROGRAM_WHOLE */
+    PROGRAM_COMPLEX_INTERVAL, /* interval volumes of PROGRAM_COMPLEX */
     PROGRAM_LABELS,
     PROGRAM_INTERVAL,
     PROGRAM_COUNT

@@ -31,11 +31,11 @@ static void key_write(const tc_context *context, unsigned kind, char key[KEY_BYT
     snprintf(device, sizeof device, "%s, %s, %s, %s, %s, driver %s", d->name, vendor, d->platform, version, d->version,
              d->driver);
     line_end(device);
-    const int length = snprintf(key, KEY_BYTES, "tetracubes verdict 1\n%s\n", device), room = KEY_BYTES - length;
+    const int length = snprintf(key, KEY_BYTES, "tetracubes verdict 1\n%s\n", device), capacity = KEY_BYTES - length;
     if (kind == KERNEL_KINDS)
-        snprintf(key + length, (size_t)room, "opened by tetracubes %s\n", tc_version());
+        snprintf(key + length, (size_t)capacity, "opened by tetracubes %s\n", tc_version());
     else
-        snprintf(key + length, (size_t)room,
+        snprintf(key + length, (size_t)capacity,
                  "kernels %u of tetracubes %s, %016" PRIx64 ": work-items %u, division %d, fp64 %d, in place %d\n",
                  kind, tc_version(), kernel_sources_hash(), p->work_items, (int)p->division, d->has_fp64,
                  context->in_place);

@@ -111,7 +111,7 @@ static void vetted_note(tc_context *context, kernel_kind kind) {
 static tc_status kind_vet(tc_context *context, kernel_kind kind, bool *exchanged) {
     const unsigned number = kind_number(kind);
     *exchanged = false;
-    while (!context->is_trial && !context->vetted[number]) {
+    while (!context->for_trial && !context->vetted[number]) {
         kept_verdict v;
         const double start = clock_ms();
         verdict_find(context, number, &v);
@@ -133,7 +133,7 @@ tc_status device_vet(tc_context *context) {
     const tc_device_info *d = &context->info;
     const char *fault = variant_fault(d);
     kept_verdict v;
-    if (context->is_trial) return TC_OK;
+    if (context->for_trial) return TC_OK;
     if (fault && (context->expert.child_trial || context->options.check_device))
         return (tc_status)fail(TC_ERROR_WRONG_RESULT,
                                "driver %s of %s (%s) %s, so that results are wrong: update the driver, use another "

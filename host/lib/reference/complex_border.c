@@ -92,11 +92,11 @@ static bool face_limit(const face_table *t, border_face *face) {
 
 static tc_status face_append(const face_table *t, border_face face, complex_border *out) {
     if (!face_limit(t, &face)) return TC_OK;
-    if (out->face_count == out->room) {
-        const uint64_t room = out->room ? 2 * out->room : 256;
-        border_face *grown = realloc(out->faces, (size_t)room * sizeof *grown);
+    if (out->face_count == out->capacity) {
+        const uint64_t capacity = out->capacity ? 2 * out->capacity : 256;
+        border_face *grown = realloc(out->faces, (size_t)capacity * sizeof *grown);
         if (!grown) return memory_fail();
-        out->faces = grown, out->room = room;
+        out->faces = grown, out->capacity = capacity;
     }
     out->faces[out->face_count++] = face;
     return TC_OK;

@@ -18,7 +18,7 @@ typedef struct border_face {
 
 typedef struct complex_border {
     border_face *faces; /* by tetrahedron, then by the corner that they do not have; by cell, then as cell_faces has */
-    uint64_t face_count, room;
+    uint64_t face_count, capacity;
 } complex_border;
 
 /* Faces of the border that have a point inside. To be released in any case. Tetrahedra, or where keeps_cells is set
@@ -26,13 +26,14 @@ typedef struct complex_border {
 tc_status complex_border_find(const tc_grid *grid, double isovalue, bool keeps_cells, complex_border *out);
 void complex_border_release(complex_border *border);
 
-/* A vertex on the edge of two points, or in the place of one, which is both. */
+/* A vertex on the edge of two points, or at one, which is both. */
 typedef struct border_vertex {
     uint32_t a, b;
 } border_vertex;
 
-/* The inside part of a face; bit n of inside: its point n is. has_diagonal: a quadrilateral's is not crossed, or has a
- * vertex; else it is cut off as one. Returns the number of triangles. They are fanned around inside points, so that no
+/* The inside part of a face; bit n of inside: its point n is inside. has_diagonal: a quadrilateral is cut as its two
+ * triangles are, as its diagonal is not crossed or has a vertex; else it is cut as a whole. Returns the number of
+ * triangles. They are fanned around inside points, so that no
  * chord can be an edge of the surface. */
 enum { BORDER_TRIANGLES_MAX = 4 };
 

@@ -173,7 +173,7 @@ static bool at_border_of_cubes(const reference *r, const int64_t p[3]) {
     return present > 0 && present < 8;
 }
 
-/* Whether a sample owns a vertex in its own place, as the surface goes through it, or ends at the border inside it. The
+/* Whether a sample owns a vertex at itself, as the surface goes through it, or ends at the border inside it. The
  * latter is both ends of the edge that the vertex lies on. */
 static bool sample_vertex_find(const reference *r, const int64_t owner[3], int64_t a[3], int64_t b[3]) {
     if (sample_is(r, owner, SNAPPED)) {

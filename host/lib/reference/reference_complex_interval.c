@@ -14,7 +14,7 @@
 typedef struct interval_run {
     const tc_grid *grid;
     reference bounds[BOUND_COUNT];
-    tc_mesh surfaces[BOUND_COUNT]; /* their vertices' place in the interval volume */
+    tc_mesh surfaces[BOUND_COUNT]; /* where their vertices are in the interval volume */
     uint32_t first[BOUND_COUNT];   /* number of the first vertex of each */
     interval_case cases[INTERVAL_CASES];
     uint32_t *point_numbers;      /* of samples within; NO_NUMBER elsewhere */

@@ -15,7 +15,7 @@
 
 typedef struct interval_run {
     reference bounds[BOUND_COUNT]; /* the surfaces; their signs tell where a sample is */
-    tc_mesh surfaces[BOUND_COUNT]; /* their vertices' place in the interval volume */
+    tc_mesh surfaces[BOUND_COUNT]; /* where their vertices are in the interval volume */
     uint32_t first[BOUND_COUNT];   /* number of the first vertex of each */
     uint32_t *sample_ids[2];       /* of samples within, for even and odd layers */
     interval_case cases[INTERVAL_CASES];

@@ -91,8 +91,9 @@ void reference_end(reference *r);
 /* Room for the numbers of vertices, before any are made. */
 tc_status reference_ids_allocate(reference *r);
 
-/* Numbers the vertices of a layer, and makes them where there is a mesh. Of a piece's first one the seam is told; those
- * of the layer behind are numbered by the next piece's seam, and are not the piece's own. */
+/* Numbers the vertices of a layer, and makes them where there is a mesh. The first layer of a piece also
+ * fills the piece's seam. Vertices of the layer behind it get their numbers from the next piece's seam, and are not
+ * the piece's own. */
 void reference_layer_vertices(reference *r, int64_t layer);
 
 /* Whether as much was emitted as was counted: not where the caller has changed its arrays in between. */

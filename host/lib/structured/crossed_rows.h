@@ -14,7 +14,7 @@ typedef struct classified_rows {
     const tc_grid *grid;
     const slab_plan *plan;
     int edge_types;                          /* those below this one have vertices */
-    bool is_closed;                          /* samples within on the border are vertices, too */
+    bool is_closed;                          /* inside samples on the border are vertices, too */
     const uint64_t *words, *zeros, *offsets; /* zeros: NULL where the method has none */
     const brick_state *bricks;
 } classified_rows;

@@ -249,7 +249,7 @@ static tc_status plan_refuse(const tc_context *context, const tc_grid *grid, pla
                            (unsigned long long)bytes, (unsigned long long)plan_budget(context, grid, needs));
 }
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_place samples,
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_storage samples,
                          slab_plan *plan) {
     uint64_t layer_samples = (uint64_t)(grid->dims[0] * grid->dims[1]) * BRICK_PLANES, bytes;
     const uint64_t budget = context_budget(context);

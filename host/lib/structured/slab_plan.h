@@ -47,9 +47,9 @@ uint64_t plan_budget(const tc_context *context, const tc_grid *grid, plan_needs 
 uint64_t plan_budget_whole(const tc_context *context, const tc_grid *grid, plan_needs needs);
 
 /* Where a plan has the samples: whole where that fits; or as another plan of the grid has them. */
-typedef enum sample_place { SAMPLES_THAT_FIT, SAMPLES_WHOLE, SAMPLES_IN_WINDOWS } sample_place;
+typedef enum sample_storage { SAMPLES_THAT_FIT, SAMPLES_WHOLE, SAMPLES_IN_WINDOWS } sample_storage;
 
-tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_place samples,
+tc_status slab_plan_make(const tc_context *context, const tc_grid *grid, plan_needs needs, sample_storage samples,
                          slab_plan *plan);
 
 /* Shapes the tiles of a plan whose sizes are set. */

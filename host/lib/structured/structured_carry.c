@@ -72,9 +72,9 @@ static void row_add(const carry_job *j, const uint64_t crossed[EDGES_PER_SAMPLE]
     batch->count = count;
 }
 
-/* Adds the samples of a row that are vertices: snapped ones with the edges on which they lie, others in their places.
+/* Adds the samples of a row that are vertices: snapped ones with the edges on which they lie, others at themselves.
  */
-static void places_add(const carry_job *j, uint64_t zeros, uint64_t others, const int64_t p[3], edge_batch *batch) {
+static void at_samples_add(const carry_job *j, uint64_t zeros, uint64_t others, const int64_t p[3], edge_batch *batch) {
     const int64_t owner = (p[2] * j->grid->dims[1] + p[1]) * j->grid->dims[0] + p[0];
     for (uint64_t rest = zeros | others; rest; rest &= rest - 1, batch->count++) {
         const int bit = __builtin_ctzll(rest);
@@ -136,7 +136,7 @@ static void brick_carry(carry_job *j, uint64_t brick, brick_words *words, edge_b
         }
         const crossed_row found = crossed_row_of(&j->rows, words, row, plane, p, packed);
         row_add(j, found.crossed, p, batch);
-        places_add(j, found.zeros, found.border, p, batch);
+        at_samples_add(j, found.zeros, found.border, p, batch);
     }
     j->vertices += batch->vertex + batch->count - vertex;
 }
@@ -149,7 +149,7 @@ static uint64_t active_brick(const carry_job *j, uint64_t n) {
 
 static void bricks_carry(void *shared) {
     carry_job *j = shared;
-    edge_batch batch = {.has_places = j->rows.is_closed};
+    edge_batch batch = {.has_at_samples = j->rows.is_closed};
     brick_words words = {.zero = {{{0}}}};
     uint64_t n;
     while ((n = atomic_fetch_add(&j->next, SHARE_BRICKS)) < j->end && !j->wrong) {
@@ -181,8 +181,8 @@ static tc_status slab_carry(carry_job *j, uint32_t slab_index, uint32_t brick_co
         j->next = n;
         j->end = end - n < STEP_BRICKS ? end : n + STEP_BRICKS;
         parallel_run((j->end - n + SHARE_BRICKS - 1) / SHARE_BRICKS, bricks_carry, j);
-        status =
-            context_progress(j->grid->context, "carry", 0.5 + 0.5 * (double)j->vertices / (double)(j->carry->room + 1));
+        status = context_progress(j->grid->context, "carry",
+                                  0.5 + 0.5 * (double)j->vertices / (double)(j->carry->capacity + 1));
     }
     return status;
 }
@@ -295,7 +295,7 @@ tc_status structured_carry(const tc_grid *grid, const tc_extract_options *option
     if (!device->heads || !inside_has_surface(inside_range_of(grid->type, options->isovalue), options->closed))
         return TC_OK;
     for (uint32_t n = 0; n < plan->own_slabs; n++) *vertex_count += device->heads[n * STATE_WORDS + STATE_VERTICES];
-    if (*vertex_count != c->room) return TC_OK; /* the caller compares the two */
+    if (*vertex_count != c->capacity) return TC_OK; /* the caller compares the two */
     ends_fill(&j);
     return results_carry(&j, method_has_zeros(options->method));
 }

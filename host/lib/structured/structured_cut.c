@@ -111,12 +111,12 @@ static tc_status strip_refuse(const run *r, const mesh_window *part) {
 }
 
 static tc_status step_add(emit_plan *e, const emit_step *step) {
-    if (e->step_count == e->step_room) {
-        const uint32_t room = 2 * e->step_room + 16;
-        emit_step *grown = realloc(e->steps, room * sizeof *grown);
+    if (e->step_count == e->step_capacity) {
+        const uint32_t capacity = 2 * e->step_capacity + 16;
+        emit_step *grown = realloc(e->steps, capacity * sizeof *grown);
         if (!grown) return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the parts of a surface");
         e->steps = grown;
-        e->step_room = room;
+        e->step_capacity = capacity;
     }
     e->steps[e->step_count++] = *step;
     return TC_OK;

@@ -27,8 +27,8 @@ typedef struct emit_plan {
     mesh_window whole;     /* where one window holds the mesh */
     uint32_t window_count; /* else 1, or 2 where copies overlap kernels; 0: whole */
     emit_step *steps;
-    uint32_t step_count, step_room;
-    unsigned shrink; /* steps of several strips use a window halved so many times */
+    uint32_t step_count, step_capacity;
+    unsigned shrink; /* a step of several strips fills 1 / 2^shrink of a window at most */
     double kernels_end_ms;
 } emit_plan;
 

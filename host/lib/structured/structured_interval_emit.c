@@ -1,6 +1,6 @@
 /*
  * Steps of a slab: runs of bricks whose vertices and tetrahedra fit the memory that is left. Where the device works in
- * the host's memory they are made in their place, else they are read back from windows.
+ * the host's memory they are made where they stay, else they are read back from windows.
  */
 #include "failure.h"
 #include "structured/structured_interval.h"

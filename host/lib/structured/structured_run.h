@@ -122,13 +122,14 @@ slab slab_base(const tc_grid *grid, const slab_plan *plan, inside_range inside, 
 
 /* Makes planes z0 <= z < z1 of an array available, in a buffer of `room` bytes: in place where the device can, else by
  * a copy, only enqueued. */
-tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queue, device_buffer *buffer, int array,
+tc_status grid_array_provide(tc_grid *grid, uint64_t capacity, cl_command_queue queue, device_buffer *buffer, int array,
                              uint64_t z0, uint64_t z1);
 
 /* Where the first planes of the slab's arrays are in their buffers; they have planes up to before `end`. */
 void slab_arrays_locate(const tc_grid *grid, uint64_t end, slab *s);
 
-/* Sign words, the constant bricks before them; then words of zeros, bricks without any before them. */
+/* Reserves the two bricks of constant words and the sign words; then two bricks without zeros and the words of zeros.
+ */
 tc_status sign_words_reserve(tc_context *context, device_buffer *words, uint64_t zero_bricks, uint64_t brick_count);
 
 /* Adds up the heads of all slabs. */

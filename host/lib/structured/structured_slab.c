@@ -36,7 +36,7 @@ struct _cl_mem *structured_samples(const tc_grid *grid, uint64_t *offset) {
     return grid->device->arrays[ARRAY_SAMPLES].memory;
 }
 
-tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queue, device_buffer *buffer, int array,
+tc_status grid_array_provide(tc_grid *grid, uint64_t capacity, cl_command_queue queue, device_buffer *buffer, int array,
                              uint64_t z0, uint64_t z1) {
     tc_context *context = grid->context;
     if (!grid_array_data(grid, array)) return TC_OK;
@@ -47,7 +47,7 @@ tc_status grid_array_provide(tc_grid *grid, uint64_t room, cl_command_queue queu
         uintptr_t before = (uintptr_t)start & (PAGE_BYTES - 1);
         return buffer_wrap(context, buffer, start - before, before + bytes, CL_MEM_READ_ONLY, array_names[array]);
     }
-    tc_status status = buffer_reserve(context, buffer, room, array_names[array]);
+    tc_status status = buffer_reserve(context, buffer, capacity, array_names[array]);
     if (status) return status;
     cl_int error = cl->EnqueueWriteBuffer(queue, buffer->memory, CL_FALSE, 0, bytes, start, 0, NULL, NULL);
     return error ? context_fail(context, "copying a grid to the device", error) : TC_OK;

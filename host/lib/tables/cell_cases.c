@@ -23,7 +23,7 @@ _Static_assert((int)CELL_EDGES_MAX <= (int)LOOP_MOST, "a loop may have all edges
 enum { CHORD_OWN = 1 << 10, CHORD_SHARED = 1 << 20, NO_EDGE = CELL_EDGES_MAX };
 
 /* Corners of shapes whose edges have about the same length. */
-static const uint8_t places[CELL_OTHER][CELL_CORNERS_MAX][3] = {
+static const uint8_t corner_positions[CELL_OTHER][CELL_CORNERS_MAX][3] = {
     [CELL_TETRAHEDRON] = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {0, 0, 4}},
     [CELL_HEXAHEDRON] = {{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 4}, {4, 0, 4}, {4, 4, 4}, {0, 4, 4}},
     [CELL_WEDGE] = {{0, 0, 0}, {4, 0, 0}, {2, 4, 0}, {0, 0, 4}, {4, 0, 4}, {2, 4, 4}},
@@ -163,7 +163,7 @@ static int32_t cell_chord_cost(const void *context, uint8_t a, uint8_t b) {
     const uint8_t *p = d->frame->edges[a], *q = d->frame->edges[b];
     int32_t cost = d->chords[a][b];
     for (int axis = 0; axis < 3; axis++) {
-        const uint8_t(*at)[3] = places[d->frame->shape];
+        const uint8_t(*at)[3] = corner_positions[d->frame->shape];
         const int difference = at[p[0]][axis] + at[p[1]][axis] - at[q[0]][axis] - at[q[1]][axis];
         cost += difference * difference;
     }

@@ -61,7 +61,7 @@ static polygon bound_make(unsigned side, unsigned first) {
 /* ------------------------------------------------------------------------------------------------------ orientation */
 
 /* A vertex in barycentric coordinates, for samples of -2 below, 1/2 within and 3 above an interval from 0 to 1. */
-static void vertex_place(const unsigned where[4], unsigned vertex, double out[4]) {
+static void vertex_position(const unsigned where[4], unsigned vertex, double out[4]) {
     static const double values[3] = {-2, 0.5, 3};
     memset(out, 0, 4 * sizeof *out);
     if (vertex < INTERVAL_LOW) {
@@ -77,7 +77,7 @@ static void vertex_place(const unsigned where[4], unsigned vertex, double out[4]
 /* Volume of four vertices by that of the tetrahedron. */
 static double part_volume(const unsigned where[4], const uint8_t part[4]) {
     double p[4][4], d[3][3];
-    for (unsigned n = 0; n < 4; n++) vertex_place(where, part[n], p[n]);
+    for (unsigned n = 0; n < 4; n++) vertex_position(where, part[n], p[n]);
     for (unsigned n = 0; n < 3; n++)
         for (unsigned c = 0; c < 3; c++) d[n][c] = p[n + 1][c + 1] - p[0][c + 1];
     return d[0][0] * (d[1][1] * d[2][2] - d[1][2] * d[2][1]) - d[0][1] * (d[1][0] * d[2][2] - d[1][2] * d[2][0]) +

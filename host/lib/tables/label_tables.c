@@ -4,7 +4,7 @@
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-static void add_place(label_tables *t, unsigned parity, unsigned type, unsigned corners, unsigned low) {
+static void position_add(label_tables *t, unsigned parity, unsigned type, unsigned corners, unsigned low) {
     label_corners *to = &t->corners[parity][type];
     *to = (label_corners){0};
     float sum[3] = {0, 0, 0};
@@ -52,9 +52,9 @@ static unsigned middle_face(unsigned parity, unsigned corner) {
     return n;
 }
 
-/* The place of a type, as corners of the cube at its owner: known where a tetrahedron of that cube has it. */
-static void place_vertex(label_tables *t, unsigned parity, owned_vertex owner, unsigned corners) {
-    if (!owner.dx && !owner.dy && !owner.dz) add_place(t, parity, owner.type, corners, 0);
+/* The position of a type, as corners of the cube at its owner: known where a tetrahedron of that cube has it. */
+static void vertex_locate(label_tables *t, unsigned parity, owned_vertex owner, unsigned corners) {
+    if (!owner.dx && !owner.dy && !owner.dz) position_add(t, parity, owner.type, corners, 0);
 }
 
 /* Edges and faces at x + 1, y + 1 or z + 1 are those of the next cube, which finds them at its own first sample. */
@@ -66,16 +66,16 @@ static void vertices_derive(label_tables *t, unsigned parity, unsigned tetrahedr
     for (unsigned e = 0; e < 6; e++) {
         const unsigned a = corners[tetrahedron_edges[e][0]], b = corners[tetrahedron_edges[e][1]];
         owners[LABEL_EDGE + e] = edge_between(a, b);
-        place_vertex(t, parity, owners[LABEL_EDGE + e], 1u << a | 1u << b);
+        vertex_locate(t, parity, owners[LABEL_EDGE + e], 1u << a | 1u << b);
     }
     for (unsigned n = 0; n < 4; n++) {
         const unsigned face = all & ~(1u << corners[n]);
         const unsigned inner = tetrahedron ? middle_face(parity, corners[0]) : n;
         owners[LABEL_FACE + n] = face_owner(parity, face, inner);
-        place_vertex(t, parity, owners[LABEL_FACE + n], face);
+        vertex_locate(t, parity, owners[LABEL_FACE + n], face);
     }
     owners[LABEL_CELL] = (owned_vertex){0, 0, 0, (uint8_t)(LABEL_TYPE_CELLS + tetrahedron)};
-    place_vertex(t, parity, owners[LABEL_CELL], all);
+    vertex_locate(t, parity, owners[LABEL_CELL], all);
 }
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
@@ -105,18 +105,20 @@ static bool is_partition(unsigned pattern) {
 }
 
 /* The corners as points, in the order of tables.h; all vertices are means of some of them. */
-static const int places[4][3] = {{0, 0, 0}, {12, 0, 0}, {0, 12, 0}, {0, 0, 12}};
+static const int corner_positions[4][3] = {{0, 0, 0}, {12, 0, 0}, {0, 12, 0}, {0, 0, 12}};
 
-static void vertex_place(unsigned vertex, int out[3]) {
+static void vertex_position(unsigned vertex, int out[3]) {
     for (unsigned axis = 0; axis < 3; axis++) {
         int sum = 0, all = 0;
-        for (unsigned n = 0; n < 4; n++) all += places[n][axis];
+        for (unsigned n = 0; n < 4; n++) all += corner_positions[n][axis];
         if (vertex == LABEL_CELL)
             sum = all / 4;
         else if (vertex >= LABEL_FACE)
-            sum = (all - places[vertex - LABEL_FACE][axis]) / 3;
+            sum = (all - corner_positions[vertex - LABEL_FACE][axis]) / 3;
         else
-            sum = (places[tetrahedron_edges[vertex][0]][axis] + places[tetrahedron_edges[vertex][1]][axis]) / 2;
+            sum = (corner_positions[tetrahedron_edges[vertex][0]][axis] +
+                   corner_positions[tetrahedron_edges[vertex][1]][axis]) /
+                  2;
         out[axis] = sum;
     }
 }
@@ -124,11 +126,11 @@ static void vertex_place(unsigned vertex, int out[3]) {
 /* Whether the interface winds counter-clockwise seen from its outer corner's side. */
 static bool faces_outer(const label_interface *i) {
     int p[3][3], u[3], v[3], across = 0;
-    for (unsigned n = 0; n < 3; n++) vertex_place(i->vertices[n], p[n]);
+    for (unsigned n = 0; n < 3; n++) vertex_position(i->vertices[n], p[n]);
     for (unsigned axis = 0; axis < 3; axis++) u[axis] = p[1][axis] - p[0][axis], v[axis] = p[2][axis] - p[0][axis];
     for (unsigned axis = 0; axis < 3; axis++) {
         const unsigned y = (axis + 1) % 3, z = (axis + 2) % 3;
-        across += (u[y] * v[z] - u[z] * v[y]) * (places[i->outer][axis] - places[i->inner][axis]);
+        across += (u[y] * v[z] - u[z] * v[y]) * (corner_positions[i->outer][axis] - corner_positions[i->inner][axis]);
     }
     return across > 0;
 }

@@ -26,7 +26,7 @@
 
 enum { TETRAHEDRA_PER_CUBE = 5, EDGES_PER_SAMPLE = 6, CUBE_EDGES = 18, CUBE_TRIANGLES_MAX = 10 };
 
-/* Vertices that a sample owns, in their order in a mesh: on its six edges, and the one in its own place, where the
+/* Vertices that a sample owns, in their order in a mesh: on its six edges, and the one at itself, where the
  * surface goes through the sample (method snap), or ends at the border inside it (closed surfaces). */
 enum vertex_type { EDGE_X, EDGE_Y, EDGE_Z, EDGE_XY, EDGE_XZ, EDGE_YZ, VERTEX_SAMPLE, VERTEX_TYPES_MOST };
 
@@ -56,7 +56,7 @@ extern const owned_vertex cube_edges[CUBE_EDGES];
 /* The index in cube_edges of the edge between two corners. */
 uint8_t cube_edge_index(unsigned corner_a, unsigned corner_b);
 
-/* The place of a vertex of a cube: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
+/* Where a vertex of a cube lies: an index in cube_edges, or CUBE_EDGES + c for corner c itself. */
 owned_vertex cube_vertex(unsigned index);
 
 /* What all tetrahedra of a cube emit, derived from the tables above; vertices are indices as cube_vertex has them. */

@@ -21,7 +21,7 @@ enum { SHARE = 1 << 16 };
 /* Tetrahedra of a share that have three points or more on the border. */
 typedef struct share_list {
     uint32_t *tetrahedra;
-    uint32_t count, room;
+    uint32_t count, capacity;
 } share_list;
 
 /* A face, and how many tetrahedra have it; 0: free. */
@@ -42,7 +42,7 @@ typedef struct search {
     counted_face *table; /* open addressing, half full at most */
     uint64_t table_size;
     border_list *out;
-    uint64_t room;
+    uint64_t capacity;
 } search;
 
 static tc_status memory_fail(void) { return (tc_status)fail(TC_ERROR_MEMORY, "no memory for the border's faces"); }
@@ -146,11 +146,11 @@ static tc_status points_mark(search *s) {
 static unsigned is_marked(const search *s, uint32_t point) { return s->marks[point / 64] >> point % 64 & 1; }
 
 static bool candidate_add(share_list *list, uint64_t tetrahedron) {
-    if (list->count == list->room) {
-        const uint32_t room = list->room ? 2 * list->room : 64;
-        uint32_t *grown = realloc(list->tetrahedra, (size_t)room * sizeof *grown);
+    if (list->count == list->capacity) {
+        const uint32_t capacity = list->capacity ? 2 * list->capacity : 64;
+        uint32_t *grown = realloc(list->tetrahedra, (size_t)capacity * sizeof *grown);
         if (!grown) return false;
-        list->tetrahedra = grown, list->room = room;
+        list->tetrahedra = grown, list->capacity = capacity;
     }
     list->tetrahedra[list->count++] = (uint32_t)tetrahedron;
     return true;
@@ -226,11 +226,11 @@ static tc_status faces_count(search *s) {
 
 static tc_status face_append(search *s, uint32_t a, uint32_t b, uint32_t c, uint32_t d) {
     border_list *out = s->out;
-    if (out->face_count == s->room) {
-        const uint64_t room = s->room ? 2 * s->room : 256;
-        cap_face *grown = realloc(out->faces, (size_t)room * sizeof *grown);
+    if (out->face_count == s->capacity) {
+        const uint64_t capacity = s->capacity ? 2 * s->capacity : 256;
+        cap_face *grown = realloc(out->faces, (size_t)capacity * sizeof *grown);
         if (!grown) return memory_fail();
-        out->faces = grown, s->room = room;
+        out->faces = grown, s->capacity = capacity;
     }
     out->faces[out->face_count++] = (cap_face){{a, b, c, d}};
     return TC_OK;
@@ -294,13 +294,13 @@ static tc_status faces_append(search *s) {
 
 /* ---------------------------------------------------------------------------------------------------------- points */
 
-/* The place of a point in the list; before: how many are marked before each word of marks. */
-static uint32_t place_of(const search *s, const uint32_t *before, uint32_t point) {
+/* The index of a point in the list; before: how many are marked before each word of marks. */
+static uint32_t index_of(const search *s, const uint32_t *before, uint32_t point) {
     const uint64_t lower = s->marks[point / 64] & ((UINT64_C(1) << point % 64) - 1);
     return before[point / 64] + (uint32_t)__builtin_popcountll(lower);
 }
 
-/* Lists the points of faces, which are marked now, and gives faces their places there. */
+/* Lists the points of faces, which are marked now, and gives faces their indices there. */
 static tc_status points_list(search *s) {
     border_list *out = s->out;
     const uint64_t words = s->c->point_count / 64 + UINT64_C(1);
@@ -322,7 +322,7 @@ static tc_status points_list(search *s) {
             *points++ = (uint32_t)(64 * n) + (uint32_t)__builtin_ctzll(rest);
     for (uint64_t n = 0; n < 4 * out->face_count; n++) {
         uint32_t *point = &out->faces[n / 4].points[n % 4];
-        if (*point < CAP_HALF) *point = place_of(s, before, *point);
+        if (*point < CAP_HALF) *point = index_of(s, before, *point);
     }
     free(before);
     out->greatest = -INFINITY;

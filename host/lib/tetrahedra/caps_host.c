@@ -17,19 +17,19 @@ typedef struct caps_run {
     double isovalue;
     uint32_t *numbers; /* by point of the border: its vertex */
     tc_mesh *mesh;     /* NULL: count only */
-    cap_sizes sizes, room;
+    cap_sizes sizes, capacity;
 } caps_run;
 
 static tc_status change_fail(void) {
     return (tc_status)fail(TC_ERROR_DATA, "the samples or tetrahedra have changed while they were extracted");
 }
 
-static bool point_inside(const tc_grid *grid, const border_list *border, double isovalue, uint64_t place) {
-    return grid_value_at(grid, border->points[place]) >= isovalue;
+static bool point_inside(const tc_grid *grid, const border_list *border, double isovalue, uint64_t index) {
+    return grid_value_at(grid, border->points[index]) >= isovalue;
 }
 
 static void point_emit(const caps_run *c, uint64_t n) {
-    const uint64_t vertex = c->mesh->vertex_count - c->room.vertices + c->sizes.vertices;
+    const uint64_t vertex = c->mesh->vertex_count - c->capacity.vertices + c->sizes.vertices;
     float *out = (float *)c->mesh->channels[CHANNEL_POSITIONS].memory + 3 * vertex;
     memcpy(out, c->grid->complex->points + 3 * (uint64_t)c->border->points[n], 3 * sizeof *out);
 }
@@ -42,7 +42,7 @@ static tc_status points_run(caps_run *c) {
     for (uint64_t n = 0; n < b->point_count; n++) {
         c->numbers[n] = UINT32_MAX;
         if (!point_inside(c->grid, b, c->isovalue, n)) continue;
-        if (c->mesh && c->sizes.vertices == c->room.vertices) return change_fail();
+        if (c->mesh && c->sizes.vertices == c->capacity.vertices) return change_fail();
         if (c->mesh) point_emit(c, n);
         c->numbers[n] = (uint32_t)(c->edges->count + c->sizes.vertices++);
     }
@@ -54,7 +54,7 @@ static tc_status points_run(caps_run *c) {
     return TC_OK;
 }
 
-/* The vertex on an edge between two points of the border, or in the place of one; UINT32_MAX where there is none. */
+/* The vertex on an edge between two points of the border, or at one; UINT32_MAX where there is none. */
 static uint32_t vertex_of(const caps_run *c, uint32_t a, uint32_t b) {
     const uint32_t p = c->border->points[a < b ? a : b], q = c->border->points[a < b ? b : a];
     return a == b ? c->numbers[a] : edge_numbers_get(c->edges, p, q);
@@ -75,11 +75,11 @@ static tc_status face_run(caps_run *c, const cap_face *face) {
     for (int n = 0; n < f.corner_count; n++) inside |= (unsigned)(c->numbers[f.points[n]] != UINT32_MAX) << n;
     const bool has = has_diagonal(c, &f);
     const int count = f.is_half && !has ? 0 : border_face_cut(&f, inside, has, parts);
-    if (c->mesh && c->sizes.triangles + (uint64_t)count > c->room.triangles) return change_fail();
+    if (c->mesh && c->sizes.triangles + (uint64_t)count > c->capacity.triangles) return change_fail();
     for (int n = 0; n < 3 * count && c->mesh; n++) {
         const border_vertex v = parts[n / 3][n % 3];
         const uint32_t number = vertex_of(c, v.a, v.b);
-        const uint64_t triangle = c->mesh->triangle_count - c->room.triangles + c->sizes.triangles;
+        const uint64_t triangle = c->mesh->triangle_count - c->capacity.triangles + c->sizes.triangles;
         if (number == UINT32_MAX) return change_fail();
         ((uint32_t *)c->mesh->triangles.memory)[3 * triangle + (uint64_t)n] = number;
     }
@@ -95,7 +95,7 @@ static tc_status border_run(tc_grid *grid, const tc_extract_options *options, co
     if (status || border->greatest < options->isovalue) return status;
     caps_run c = {.grid = grid, .border = border, .edges = edges, .isovalue = options->isovalue};
     c.mesh = mesh;
-    c.room = *sizes;
+    c.capacity = *sizes;
     status = points_run(&c);
     for (uint64_t n = 0; n < border->face_count && !status; n++) status = face_run(&c, &border->faces[n]);
     free(c.numbers);
@@ -119,7 +119,7 @@ tc_status caps_host_emit(tc_grid *grid, const tc_extract_options *options, const
 }
 
 void caps_carry(const tc_grid *grid, const border_list *border, double isovalue, const carry *c, uint64_t first) {
-    edge_batch batch = {.vertex = first, .has_places = true};
+    edge_batch batch = {.vertex = first, .has_at_samples = true};
     for (uint64_t n = 0; n < border->point_count; n++) {
         if (!point_inside(grid, border, isovalue, n)) continue;
         if (batch.count == BATCH_EDGES) carry_batch(c, grid, isovalue, &batch);

@@ -63,7 +63,7 @@ static void cell_carry(carry_job *j, const active_cell *a, edge_batch *batch) {
 
 static void tile_carry(carry_job *j, uint64_t tile, edge_batch *batch) {
     const uint64_t first = tile * j->size.tile_actives, end = first + j->size.tile_actives;
-    const uint64_t vertex = tile ? j->tiles[TILE_WORDS * (tile - 1) + TILE_VERTICES] & SCAN_VALUE : 0;
+    const uint64_t vertex = tile ? j->tiles[TILE_WORDS * (tile - 1) + TILE_SUM_X] & SCAN_VALUE : 0;
     batch->vertex = vertex;
     for (uint64_t n = first; n < end && n < j->size.active_count; n++)
         if (j->cells)
@@ -143,7 +143,7 @@ bool complex_is_classified(const tc_grid *grid, const tc_extract_options *option
 
 static tc_status surface_carry_to(carry_job *j, const edge_numbers *edges, bool whole, uint64_t *vertex_count) {
     *vertex_count = j->size.vertex_count;
-    if (j->carry->room != *vertex_count) return TC_OK; /* the caller compares the two */
+    if (j->carry->capacity != *vertex_count) return TC_OK; /* the caller compares the two */
     tc_status status = TC_OK;
     j->edge_vertices = *vertex_count - j->size.cap_vertices;
     if (edges) j->edges = edges->edges;

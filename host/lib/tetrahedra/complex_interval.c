@@ -235,7 +235,7 @@ tc_status volume_emit(volume_run *v) {
 }
 
 /* Whether a buffer has room on the device; else the complex is cut. */
-static tc_status room_check(volume_run *v, uint64_t bytes, const char *name) {
+static tc_status size_check(volume_run *v, uint64_t bytes, const char *name) {
     if (surface_fits(&v->run, bytes)) return TC_OK;
     return (tc_status)fail(TC_ERROR_MEMORY, "the grid of tetrahedra has no room for the %s of its interval volume",
                            name);
@@ -246,10 +246,10 @@ static tc_status volume_open(volume_run *v, const tc_interval_volume *interval, 
     uint32_t offset; /* 0, as blocks begin with a page */
     bytes[0] = CHANNEL_BYTES * interval_first(&interval->size, BLOCK_COUNT);
     bytes[1] = TETRAHEDRON_BYTES * interval->size.tetrahedra;
-    tc_status status = room_check(v, bytes[0], "vertices");
+    tc_status status = size_check(v, bytes[0], "vertices");
     if (!status)
         status = mesh_part_open(v->context, &w->positions, &interval->positions, 0, bytes[0], &offset, "vertices");
-    if (!status) status = room_check(v, bytes[1], "tetrahedra");
+    if (!status) status = size_check(v, bytes[1], "tetrahedra");
     return status
                ? status
                : mesh_part_open(v->context, &w->tetrahedra, &interval->tetrahedra, 0, bytes[1], &offset, "tetrahedra");

@@ -23,10 +23,10 @@ static void order_make(unsigned number, uint8_t order[4]) {
 
 /* Bit e: of the two points of edge e the first has the larger number. */
 static unsigned pairs_of(const uint8_t order[4]) {
-    unsigned place[4], pairs = 0;
-    for (unsigned n = 0; n < 4; n++) place[order[n]] = n;
+    unsigned rank[4], pairs = 0;
+    for (unsigned n = 0; n < 4; n++) rank[order[n]] = n;
     for (unsigned e = 0; e < 6; e++)
-        pairs |= (unsigned)(place[tetrahedron_edges[e][0]] > place[tetrahedron_edges[e][1]]) << e;
+        pairs |= (unsigned)(rank[tetrahedron_edges[e][0]] > rank[tetrahedron_edges[e][1]]) << e;
     return pairs;
 }
 

@@ -46,7 +46,7 @@ static uint32_t tile_word(const volume_run *v, const edge_list *l, int scan, uin
 
 static tc_status tile_join(const volume_run *v, const edge_list *l, uint32_t tile, const uint32_t *names,
                            joined_edges joined[BOUND_COUNT]) {
-    const uint32_t cuts = tile ? tile_word(v, l, SCAN_CUTS, tile - 1, TILE_VERTICES) & SCAN_VALUE : 0;
+    const uint32_t cuts = tile ? tile_word(v, l, SCAN_CUTS, tile - 1, TILE_SUM_X) & SCAN_VALUE : 0;
     const uint32_t first = 4 * cuts, end = first + tile_word(v, l, SCAN_CROSSINGS, tile, TILE_EDGES);
     tc_status status = TC_OK;
     for (uint32_t n = first; n < end && !status; n++) {

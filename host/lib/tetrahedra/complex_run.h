@@ -42,7 +42,8 @@ bool complex_fits(const tc_grid *grid);
 /* Brings the arrays of a complex that is not cut to the device, where they are not there. */
 tc_status complex_arrays_provide(tc_grid *grid);
 
-/* Cuts the complex, which is not cut yet; for interval volumes, whose slabs are others. TC_ERROR_MEMORY, with what
+/* Cuts the complex, which is not cut yet, into slabs: complex_cut for surfaces, complex_interval_cut for interval
+ * volumes, whose slabs are others. TC_ERROR_MEMORY, with what
  * would be needed, where the least slab is too large: nothing has changed then. */
 tc_status complex_cut(tc_grid *grid);
 tc_status complex_interval_cut(tc_grid *grid);
@@ -139,8 +140,8 @@ void complex_classified_note(tc_grid *grid, const tc_extract_options *options, s
 /* What both methods begin a run with: kernels, and the workspace for this grid. */
 tc_status complex_workspace_begin(complex_run *r, tc_grid *grid, const tc_extract_options *options);
 
-/* Parts of a run: fills a buffer from byte `first` on; reads the head back; the table of edges, whose entries are a
- * power of two. */
+/* Parts of a run: fills a buffer from byte `first` on; reads the head back; reserves the table of edges, whose size is
+ * a power of two. */
 tc_status surface_fill(const complex_run *r, const device_buffer *buffer, cl_uint value, uint64_t first,
                        uint64_t bytes);
 tc_status surface_head_read(complex_run *r);
@@ -177,7 +178,7 @@ typedef struct joined_edges {
     active_tetrahedron *active; /* of one slab */
     edge_numbers edges;
     uint32_t *numbers; /* of the vertices of each slab, one slab after the other */
-    uint64_t number_count, number_room, active_room;
+    uint64_t number_count, number_capacity, active_capacity;
 } joined_edges;
 
 /* Adds those of a slab whose vertices are numbered. names: the grid's numbers of the slab's points; NULL: the same. */

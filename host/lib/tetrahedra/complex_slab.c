@@ -78,10 +78,10 @@ tc_status complex_slab_ranges_keep(tc_grid *grid, struct complex_slabs *slabs, u
 
 /* -------------------------------------------------------------------------------------------------------- vertices */
 
-static void *room_enlarge(void *memory, uint64_t *room, uint64_t count, size_t item_bytes) {
-    uint64_t larger = 2 * *room > count ? 2 * *room : count;
+static void *capacity_enlarge(void *memory, uint64_t *capacity, uint64_t count, size_t item_bytes) {
+    uint64_t larger = 2 * *capacity > count ? 2 * *capacity : count;
     void *grown = realloc(memory, (size_t)larger * item_bytes);
-    if (grown) *room = larger;
+    if (grown) *capacity = larger;
     return grown;
 }
 
@@ -91,8 +91,8 @@ static tc_status join_fail(void) {
 
 tc_status joined_edges_reserve(joined_edges *j, uint64_t vertices) {
     const uint64_t numbers = j->number_count + vertices;
-    if (numbers <= j->number_room) return TC_OK;
-    void *grown = room_enlarge(j->numbers, &j->number_room, numbers, sizeof *j->numbers);
+    if (numbers <= j->number_capacity) return TC_OK;
+    void *grown = capacity_enlarge(j->numbers, &j->number_capacity, numbers, sizeof *j->numbers);
     if (grown) j->numbers = grown;
     return grown ? TC_OK : join_fail();
 }
@@ -107,7 +107,8 @@ tc_status joined_edges_add(joined_edges *j, const uint32_t *names, uint32_t a, u
 /* Makes room for the active tetrahedra and vertex numbers of a slab. */
 static tc_status lists_reserve(joined_edges *j, uint64_t active, uint64_t vertices) {
     void *grown = j->active;
-    if (active > j->active_room) grown = room_enlarge(j->active, &j->active_room, active, sizeof *j->active);
+    if (active > j->active_capacity)
+        grown = capacity_enlarge(j->active, &j->active_capacity, active, sizeof *j->active);
     if (grown) j->active = grown;
     return grown ? joined_edges_reserve(j, vertices) : join_fail();
 }

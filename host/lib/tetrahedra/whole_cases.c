@@ -42,9 +42,9 @@ typedef struct hashed_case {
 struct whole_cases {
     pthread_mutex_t lock; /* of all but the index */
     uint8_t *bytes;
-    uint64_t units, unit_room;
+    uint64_t units, unit_capacity;
     hashed_case *hashed; /* open addressing, half full at most */
-    uint64_t hashed_count, hashed_room;
+    uint64_t hashed_count, hashed_capacity;
     _Atomic uint32_t index[INDEX_SIZE];
 };
 
@@ -160,12 +160,12 @@ static uint32_t case_append(whole_cases *c, const cell_frame *frame, const case_
     const uint32_t bytes = case_write(frame, q, made);
     const uint64_t units = (bytes + CASE_UNIT - 1) / CASE_UNIT, number = c->units;
     if (number + units > UINT32_MAX >> 6) return 0;
-    if (number + units > c->unit_room) {
-        const uint64_t room = 2 * (number + units) + 256;
-        uint8_t *grown = realloc(c->bytes, CASE_UNIT * (size_t)room);
+    if (number + units > c->unit_capacity) {
+        const uint64_t capacity = 2 * (number + units) + 256;
+        uint8_t *grown = realloc(c->bytes, CASE_UNIT * (size_t)capacity);
         if (!grown) return 0;
         c->bytes = grown;
-        c->unit_room = room;
+        c->unit_capacity = capacity;
     }
     memset(c->bytes + CASE_UNIT * number, 0, CASE_UNIT * (size_t)units);
     memcpy(c->bytes + CASE_UNIT * number, made, bytes);
@@ -190,21 +190,21 @@ static void key_make(const cell_frame *f, unsigned pattern, uint8_t key[KEY_BYTE
 static hashed_case *hashed_find(const whole_cases *c, const uint8_t key[KEY_BYTES]) {
     uint64_t hash = 0xcbf29ce484222325u;
     for (int n = 0; n < KEY_BYTES; n++) hash = (hash ^ key[n]) * 0x100000001b3u;
-    uint64_t n = (hash ^ hash >> 29) & (c->hashed_room - 1);
-    while (c->hashed[n].answer && memcmp(c->hashed[n].key, key, KEY_BYTES) != 0) n = (n + 1) & (c->hashed_room - 1);
+    uint64_t n = (hash ^ hash >> 29) & (c->hashed_capacity - 1);
+    while (c->hashed[n].answer && memcmp(c->hashed[n].key, key, KEY_BYTES) != 0) n = (n + 1) & (c->hashed_capacity - 1);
     return &c->hashed[n];
 }
 
 static bool hashed_grow(whole_cases *c) {
-    const uint64_t old_room = c->hashed_room;
+    const uint64_t old_capacity = c->hashed_capacity;
     hashed_case *old = c->hashed, *grown = NULL;
-    if (2 * c->hashed_count < old_room) return true;
-    const uint64_t room = old_room ? 2 * old_room : 256;
-    grown = calloc((size_t)room, sizeof *grown);
+    if (2 * c->hashed_count < old_capacity) return true;
+    const uint64_t capacity = old_capacity ? 2 * old_capacity : 256;
+    grown = calloc((size_t)capacity, sizeof *grown);
     if (!grown) return false;
     c->hashed = grown;
-    c->hashed_room = room;
-    for (uint64_t n = 0; n < old_room; n++)
+    c->hashed_capacity = capacity;
+    for (uint64_t n = 0; n < old_capacity; n++)
         if (old[n].answer) *hashed_find(c, old[n].key) = old[n];
     free(old);
     return true;

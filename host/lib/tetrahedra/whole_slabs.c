@@ -24,7 +24,7 @@ typedef struct slabs_run {
     uint32_t slab_clusters;
     local_points local;
     active_cell *cells; /* of all slabs */
-    uint64_t cell_count, cell_room, triangle_count;
+    uint64_t cell_count, cell_capacity, triangle_count;
     edge_numbers edges;
     cap_sizes caps; /* of the border */
 } slabs_run;
@@ -152,12 +152,12 @@ static tc_status cells_append(slabs_run *t) {
     active_cell *found;
     uint64_t edges;
     bool differ;
-    if (all > t->cell_room) {
-        const uint64_t room = 2 * all;
-        active_cell *grown = realloc(t->cells, (size_t)room * sizeof *grown);
+    if (all > t->cell_capacity) {
+        const uint64_t capacity = 2 * all;
+        active_cell *grown = realloc(t->cells, (size_t)capacity * sizeof *grown);
         if (!grown) return (tc_status)fail(TC_ERROR_MEMORY, "the host has no memory for the active cells of all slabs");
         t->cells = grown;
-        t->cell_room = room;
+        t->cell_capacity = capacity;
     }
     tc_status status = active_cells_take(&t->r, &found);
     if (status) return status;

@@ -202,10 +202,10 @@ tc_status trial_of_kind(tc_context *context, kernel_kind kind) {
                       .whole = kind.grid == KIND_COMPLEX && kind.method == TC_METHOD_HYBRID,
                       .missing = kind.missing,
                       .plain = channel_in(kind.made, CHANNEL_NORMALS)};
-    tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;
-    context->tries = true;
+    tc_status status = context->for_trial ? kernels_build(context, kind) : TC_OK;
+    context->trial_runs = true;
     if (!status) status = kind.interval ? interval_try(context, &v) : volume_try(context, &v, kind);
-    context->tries = false;
+    context->trial_runs = false;
     trial_volume_release(&v);
     return status;
 }

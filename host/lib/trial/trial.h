@@ -51,7 +51,8 @@ typedef struct trial_volume {
 tc_status trial_volume_make(trial_volume *v);
 void trial_volume_release(trial_volume *v);
 
-/* Of a volume of whole cells: these, and their tetrahedra (trial_cells.c). noise: a number for each number. */
+/* Of a volume of whole cells: these, and their tetrahedra (trial_cells.c). noise: a pseudo-random number for
+ * each index. */
 tc_status trial_cells_make(trial_volume *v, uint64_t noise(uint64_t));
 void trial_cells_release(trial_volume *v);
 

@@ -97,10 +97,10 @@ tc_status trial_of_labels(tc_context *context, kernel_kind kind) {
     options.type = kind.type;
     options.samples = samples;
     memcpy(options.matrix, matrix, sizeof matrix);
-    tc_status status = context->is_trial ? kernels_build(context, kind) : TC_OK;
-    context->tries = true;
+    tc_status status = context->for_trial ? kernels_build(context, kind) : TC_OK;
+    context->trial_runs = true;
     if (!status) status = volume_try(context, &options);
-    context->tries = false;
+    context->trial_runs = false;
     free(samples);
     return status;
 }

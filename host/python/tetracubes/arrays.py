@@ -105,14 +105,14 @@ def matrix(spacing, origin, direction, axes):
 
 
 class _Memory:
-    """Memory of the library's that numpy reads in place; the owner lives as long as arrays of it."""
+    """Memory of the library's that numpy reads in address; the owner lives as long as arrays of it."""
 
-    def __init__(self, place, shape, dtype, owner):
-        self.__array_interface__ = {"data": (place, False), "shape": shape, "typestr": np.dtype(dtype).str,
+    def __init__(self, address, shape, dtype, owner):
+        self.__array_interface__ = {"data": (address, False), "shape": shape, "typestr": np.dtype(dtype).str,
                                     "version": 3}
         self.owner = owner
 
 
-def owned(place, shape, dtype, owner):
-    """An array over memory of the owner's, without a copy; place None: an empty one."""
-    return np.asarray(_Memory(place, shape, dtype, owner)) if place else np.empty(shape, dtype)
+def owned(address, shape, dtype, owner):
+    """An array over memory of the owner's, without a copy; address None: an empty one."""
+    return np.asarray(_Memory(address, shape, dtype, owner)) if address else np.empty(shape, dtype)

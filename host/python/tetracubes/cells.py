@@ -75,31 +75,31 @@ def contour_cells(points: npt.ArrayLike, cells: Any, values: npt.ArrayLike, leve
     skip_unsupported: whether cells that cannot be cut are left out instead of refused.
     The rest as for ``isosurface``. Vertices are x, y, z.
     """
-    place, samples = arrays.values_of(points, "points"), arrays.values_of(values, "values")
-    if place.ndim != 2 or place.shape[1] != 3:
-        raise ValueError(f"points have the shape {place.shape}, not (n, 3)")
-    if place.dtype != np.float32:
-        place = np.ascontiguousarray(place, np.float64)
-    if samples.shape != place.shape[:1]:
-        raise ValueError(f"values have the shape {samples.shape}, and there are {len(place)} points: one value each")
-    member = "points" if place.dtype == np.float32 else "points_f64"
+    positions, samples = arrays.values_of(points, "points"), arrays.values_of(values, "values")
+    if positions.ndim != 2 or positions.shape[1] != 3:
+        raise ValueError(f"points have the shape {positions.shape}, not (n, 3)")
+    if positions.dtype != np.float32:
+        positions = np.ascontiguousarray(positions, np.float64)
+    if samples.shape != positions.shape[:1]:
+        raise ValueError(f"values have the shape {samples.shape}, and there are {len(positions)} points: one value each")
+    member = "points" if positions.dtype == np.float32 else "points_f64"
     is_vtk = isinstance(cells, tuple) and len(cells) == 3 and not any(isinstance(part, tuple) for part in cells)
     types, offsets, connectivity = _vtk(cells) if is_vtk else _blocks(cells)
-    given = tc_cells(point_count=len(place), cell_count=len(types), types=types.ctypes.data,
+    given = tc_cells(point_count=len(positions), cell_count=len(types), types=types.ctypes.data,
                      offsets=offsets.ctypes.data, connectivity=connectivity.ctypes.data,
-                     skip_unsupported=skip_unsupported, **{member: place.ctypes.data})
+                     skip_unsupported=skip_unsupported, **{member: positions.ctypes.data})
     cut = tc_tetrahedra()
     check(tc.tc_tetrahedralize(ctypes.byref(given), ctypes.byref(cut)))
     try:
         how = options(tc_tetrahedra_grid_options)
-        how.point_count, how.type, how.samples = len(place), arrays.TYPES[samples.dtype], samples.ctypes.data
+        how.point_count, how.type, how.samples = len(positions), arrays.TYPES[samples.dtype], samples.ctypes.data
         how.tetrahedron_count, how.tetrahedra = cut.tetrahedron_count, cut.tetrahedra
-        setattr(how, member, place.ctypes.data)
+        setattr(how, member, positions.ctypes.data)
         if method == "hybrid":
             how.source, how.cells = ctypes.addressof(given), cut.cells
         context = contexts.take(engine, device, max_memory)
         context.progress = progress
-        with GridBase(context, tc.tc_tetrahedra_grid_create, how, (place, samples), "xyz", samples.shape) as grid:
+        with GridBase(context, tc.tc_tetrahedra_grid_create, how, (positions, samples), "xyz", samples.shape) as grid:
             return grid.extract(level, method=method, closed=closed, carry=carry)
     finally:
         tc.tc_tetrahedra_release(ctypes.byref(cut))

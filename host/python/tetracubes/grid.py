@@ -124,7 +124,7 @@ class GridBase:
         return self._extract(tc.tc_extract, how, _fields_of(carry))
 
     def _extract(self, function, how, carry, *arguments):
-        """The surface by tc_extract or tc_extract_piece, whose further arguments stand before the place of the mesh."""
+        """The surface by tc_extract or tc_extract_piece, whose further arguments stand before the pointer to the mesh."""
         fields = {name: self._field(name, array) for name, array in carry.items()}
         labelled = isinstance(how, tc_labels_options)
         handle = ctypes.c_void_p()
@@ -311,8 +311,8 @@ class Grid(GridBase):
             return pyopencl.Buffer(self._opencl, pyopencl.mem_flags.READ_WRITE, 12 * count) if count else None
 
         made = buffer(counts.vertex_count), buffer(normals and counts.vertex_count), buffer(counts.triangle_count)
-        places = [None if one is None else one.int_ptr for one in made]
-        mesh = tc_device_mesh(positions=places[0], normals=places[1], triangles=places[2])
+        addresses = [None if one is None else one.int_ptr for one in made]
+        mesh = tc_device_mesh(positions=addresses[0], normals=addresses[1], triangles=addresses[2])
         self._call(tc.tc_grid_origin, ctypes.byref(origin))
         self._call(tc.tc_emit, ctypes.byref(how), ctypes.byref(mesh), ctypes.byref(event))
         return DeviceMesh(*made, counts.vertex_count, counts.triangle_count, np.array(origin),

@@ -29,8 +29,8 @@ def fields_of(values):
     arrays = [np.ascontiguousarray(array, np.float32) for array in values.values()]
     names = (ctypes.c_char_p * count)(*[name.encode() for name in values])
     components = (ctypes.c_int * count)(*[array[:1].size if array.ndim > 1 else 1 for array in arrays])
-    places = (ctypes.c_void_p * count)(*[array.ctypes.data for array in arrays])
-    return (count, names, components, places), arrays
+    addresses = (ctypes.c_void_p * count)(*[array.ctypes.data for array in arrays])
+    return (count, names, components, addresses), arrays
 
 
 def _views():
@@ -120,10 +120,10 @@ class Mesh:
                   None if self.boundary_labels is None else np.ascontiguousarray(self.boundary_labels, np.uint32)]
         if arrays[1].size and arrays[1].max() >= len(arrays[0]):
             raise ValueError(f"a face has vertex {arrays[1].max()}, and the mesh {len(arrays[0])} vertices")
-        places = [None if array is None else array.ctypes.data for array in arrays]
-        data = tc_mesh_data(vertex_count=len(arrays[0]), triangle_count=len(arrays[1]), positions=places[0],
-                            triangles=places[1], normals=places[2], origin=tuple(self.origin),
-                            boundary_labels=places[3])
+        addresses = [None if array is None else array.ctypes.data for array in arrays]
+        data = tc_mesh_data(vertex_count=len(arrays[0]), triangle_count=len(arrays[1]), positions=addresses[0],
+                            triangles=addresses[1], normals=addresses[2], origin=tuple(self.origin),
+                            boundary_labels=addresses[3])
         return data, arrays
 
     def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin

@@ -42,8 +42,8 @@ class Tetrahedra:
     @property
     def volumes(self) -> np.ndarray:
         """float64 (m,): of each tetrahedron; their sum is the volume between the levels."""
-        place = self.positions.astype(np.float64)[self.tetrahedra]
-        first, second, third = (place[:, n] - place[:, 0] for n in (1, 2, 3))
+        corners = self.positions.astype(np.float64)[self.tetrahedra]
+        first, second, third = (corners[:, n] - corners[:, 0] for n in (1, 2, 3))
         return np.einsum("ij,ij->i", np.cross(first, second), third) / 6
 
     def mean(self, name: str) -> Any:

@@ -43,12 +43,12 @@ int data_names_add(data_names *names, const char *header_path, const char *name)
 
     const char *slash = strrchr(header_path, '/');
     size_t folder = slash ? (size_t)(slash - header_path) + 1 : 0;
-    if (names->count == names->room) {
-        int64_t room = names->room ? 2 * names->room : 64;
-        char **more = realloc(names->paths, (size_t)room * sizeof *more);
+    if (names->count == names->capacity) {
+        int64_t capacity = names->capacity ? 2 * names->capacity : 64;
+        char **more = realloc(names->paths, (size_t)capacity * sizeof *more);
         if (!more) return fail(STATUS_FAILED, "%s: out of memory for the names of its data files", header_path);
         names->paths = more;
-        names->room = room;
+        names->capacity = capacity;
     }
     char *path = malloc(folder + length + 1);
     if (!path) return fail(STATUS_FAILED, "%s: out of memory for the names of its data files", header_path);

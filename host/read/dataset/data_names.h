@@ -13,7 +13,7 @@
 
 typedef struct data_names {
     char **paths; /* the header's folder put before each */
-    int64_t count, room;
+    int64_t count, capacity;
     size_t bytes; /* of the names, without the folder */
 } data_names;
 

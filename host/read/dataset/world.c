@@ -44,7 +44,7 @@ int world_no_direction(const char *path, const char *name, int axis) {
                 path, name, axis);
 }
 
-int world_place(const read_request *request, const char *path, double matrix[3][4]) {
+int world_complete(const read_request *request, const char *path, double matrix[3][4]) {
     for (int a = 0; a < 3 && request->has_spacing; a++) set_spacing(matrix, a, request->spacing[a]);
     for (int r = 0; r < 3 && request->has_origin; r++) matrix[r][3] = request->origin[r];
 

@@ -7,7 +7,7 @@
 /* Applies the request to the matrix of a header, which may be any: --spacing becomes the length of the columns, whose
  * directions stay; a column without a direction gets that of its axis. --origin becomes the last column. STATUS_INPUT
  * unless the matrix is then finite and invertible. */
-int world_place(const read_request *request, const char *path, double matrix[3][4]);
+int world_complete(const read_request *request, const char *path, double matrix[3][4]);
 
 /* Whether the matrix is finite and invertible. */
 int world_spans(double matrix[3][4]);

@@ -7,12 +7,12 @@
 #include <sys/stat.h>
 
 int file_list_add(file_list *list, file_identity file) {
-    if (list->count == list->room) {
-        const size_t room = 2 * list->room + 4;
-        file_identity *grown = realloc(list->files, room * sizeof *grown);
+    if (list->count == list->capacity) {
+        const size_t capacity = 2 * list->capacity + 4;
+        file_identity *grown = realloc(list->files, capacity * sizeof *grown);
         if (!grown) return fail(STATUS_FAILED, "no memory for the list of %zu files", list->count);
         list->files = grown;
-        list->room = room;
+        list->capacity = capacity;
     }
     list->files[list->count++] = file;
     return 0;

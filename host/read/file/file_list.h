@@ -12,7 +12,7 @@ typedef struct file_identity {
 
 typedef struct file_list {
     file_identity *files; /* from malloc */
-    size_t count, room;
+    size_t count, capacity;
 } file_list;
 
 /* 0 or STATUS_FAILED with its text. */

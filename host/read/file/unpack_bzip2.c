@@ -13,14 +13,14 @@ int bunzip_stream(const char *path, const unsigned char *in, size_t in_bytes, ta
     size_t left = in_bytes;
     stream.next_in = (char *)(uintptr_t)in;
     for (;;) {
-        uint64_t room;
-        stream.next_out = (char *)target_room(t, &room);
-        stream.avail_out = (unsigned)room;
+        uint64_t capacity;
+        stream.next_out = (char *)target_space(t, &capacity);
+        stream.avail_out = (unsigned)capacity;
         unsigned given = left < UNPACK_CHUNK ? (unsigned)left : UNPACK_CHUNK;
         stream.avail_in = given;
         int code = BZ2_bzDecompress(&stream);
         unsigned used = given - stream.avail_in;
-        uint64_t came = room - stream.avail_out;
+        uint64_t came = capacity - stream.avail_out;
         left -= used;
         if (target_took(t, came)) break;
         if (code == BZ_STREAM_END) {

@@ -13,14 +13,14 @@ int inflate_stream(const char *path, const unsigned char *in, size_t in_bytes, t
     size_t left = in_bytes;
     stream.next_in = (Bytef *)(uintptr_t)in;
     for (;;) {
-        uint64_t room;
-        stream.next_out = target_room(t, &room);
-        stream.avail_out = (uInt)room;
+        uint64_t capacity;
+        stream.next_out = target_space(t, &capacity);
+        stream.avail_out = (uInt)capacity;
         uInt given = left < UNPACK_CHUNK ? (uInt)left : UNPACK_CHUNK;
         stream.avail_in = given;
         int code = inflate(&stream, Z_NO_FLUSH);
         left -= given - stream.avail_in;
-        if (target_took(t, room - stream.avail_out)) break;
+        if (target_took(t, capacity - stream.avail_out)) break;
         if (code == Z_STREAM_END) {
             int another = left > 2 && stream.next_in[0] == 0x1f && stream.next_in[1] == 0x8b;
             if (!t->skip && !t->bytes && !another) break;

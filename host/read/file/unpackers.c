@@ -17,11 +17,11 @@ int stream_ends_early(const char *path, uint64_t got, uint64_t wanted) {
                 path, got, wanted);
 }
 
-unsigned char *target_room(target *t, uint64_t *room) {
+unsigned char *target_space(target *t, uint64_t *capacity) {
     unsigned char *at = t->skip || !t->bytes ? t->scratch : t->out;
-    *room = t->skip ? t->skip : t->bytes ? t->bytes : 1;
+    *capacity = t->skip ? t->skip : t->bytes ? t->bytes : 1;
     uint64_t limit = at == t->scratch ? sizeof t->scratch : UNPACK_CHUNK;
-    if (*room > limit) *room = limit;
+    if (*capacity > limit) *capacity = limit;
     return at;
 }
 

@@ -21,7 +21,7 @@ typedef struct target {
 int unpack_damaged(const char *path, const char *detail);
 
 /* Room for the next bytes. */
-unsigned char *target_room(target *t, uint64_t *room);
+unsigned char *target_space(target *t, uint64_t *capacity);
 
 /* Notes that `count` bytes came. Returns 1 where that is more than was wanted. */
 int target_took(target *t, uint64_t count);

@@ -47,7 +47,7 @@ int hdf5_read(const read_request *request, const mapping *file, dataset *out) {
         status = layout_make(h.path, &stored, h.element, request, &l);
     }
     if (!status) memcpy(out->blocks->matrix, h.matrix, sizeof h.matrix);
-    if (!status) status = world_place(request, h.path, out->blocks->matrix);
+    if (!status) status = world_complete(request, h.path, out->blocks->matrix);
     if (!status) {
         l.swapped = h.is_swapped;
         snprintf(out->format, sizeof out->format, "HDF5");

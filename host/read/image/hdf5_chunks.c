@@ -26,7 +26,7 @@ typedef struct chunks {
     int filter_count;
     unsigned char fill[8];
     unsigned char *stored, *whole; /* two buffers that filters go to and fro between */
-    uint64_t room;                 /* of each */
+    uint64_t capacity;             /* of each */
 } chunks;
 
 static int damaged(const chunks *c) {
@@ -114,7 +114,7 @@ static int take_chunk(chunks *c, const hsize_t *at) {
         for (uint64_t n = 0; n < c->bytes; n += c->element) memcpy(c->stored + n, c->fill, c->element);
         return 0;
     }
-    if (bytes > c->room || H5Dread_chunk(c->h->dataset, H5P_DEFAULT, at, &mask, c->stored) < 0) return damaged(c);
+    if (bytes > c->capacity || H5Dread_chunk(c->h->dataset, H5P_DEFAULT, at, &mask, c->stored) < 0) return damaged(c);
     return undo_filters(c, bytes, mask);
 }
 
@@ -141,9 +141,9 @@ int hdf5_load_chunks(const hdf5_file *h, unsigned char *to) {
     int status = read_plan(&c);
     for (int axis = 0; axis < h->dimension; axis++) c.shape[axis] = (hsize_t)h->shape[axis];
     if (status) return status;
-    c.room = c.bytes + c.bytes / 8 + 4096; /* what does not pack well becomes a little larger */
-    c.stored = malloc(c.room);
-    c.whole = malloc(c.room);
+    c.capacity = c.bytes + c.bytes / 8 + 4096; /* what does not pack well becomes a little larger */
+    c.stored = malloc(c.capacity);
+    c.whole = malloc(c.capacity);
     if (!c.stored || !c.whole)
         status = fail(STATUS_FAILED, "%s: no memory for a chunk of %" PRIu64 " bytes", h->path, c.bytes);
     for (int axis = 0; axis >= 0 && !status;) {

@@ -220,7 +220,7 @@ static int check_stored(const hdf5_file *h) {
     return fail(STATUS_INPUT, "%s: its dataset was made, but no samples were written", h->path);
 }
 
-/* ----------------------------------------------------------------------------------------------------------- place */
+/* ----------------------------------------------------------------------------------------------------------- world */
 
 int hdf5_read_numbers(hid_t object, const char *name, double *values, int count) {
     double own[9];
@@ -251,7 +251,7 @@ void hdf5_read_text(hid_t object, const char *name, char text[HDF5_TEXT_BYTES]) 
 }
 
 /* The image that VTK has written, by the attributes of its group; the origin is that of index 0, 0, 0 of the extent. */
-static void read_place_of_vtk(hdf5_file *h) {
+static void read_world_of_vtk(hdf5_file *h) {
     double spacing[3] = {1, 1, 1}, origin[3] = {0, 0, 0}, extent[6] = {0};
     double direction[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
     const hid_t group = hdf5_open_group(h, "/VTKHDF");
@@ -271,7 +271,7 @@ static void read_place_of_vtk(hdf5_file *h) {
 }
 
 /* As Fiji and ilastik write it, z, y, x; or VTK's. */
-static int read_place(hdf5_file *h) {
+static int read_world(hdf5_file *h) {
     double sizes[3] = {1, 1, 1};
     char name[NAME_BYTES] = "";
     H5Iget_name(h->dataset, name, sizeof name);
@@ -280,7 +280,7 @@ static int read_place(hdf5_file *h) {
     if (strncmp(name, "/VTKHDF/CellData/", 17) == 0)
         return fail(STATUS_INPUT, "%s: '%s' has values of cells; of VTKHDF, those of the points of images are read",
                     h->path, name);
-    if (strncmp(name, "/VTKHDF/PointData/", 18) == 0) read_place_of_vtk(h);
+    if (strncmp(name, "/VTKHDF/PointData/", 18) == 0) read_world_of_vtk(h);
     return 0;
 }
 
@@ -309,7 +309,7 @@ int hdf5_open(hdf5_file *h, const char *path, const mapping *file, const char *n
     if (!status && !name && !(status = find_only(h, only))) name = only;
     if (!status) status = hdf5_open_array(h, name);
     if (!status) status = check_stored(h);
-    return status ? status : read_place(h);
+    return status ? status : read_world(h);
 }
 
 int hdf5_load(const hdf5_file *h, void *to) {

@@ -288,7 +288,7 @@ static int check_header(meta_header *h, dataset *out) {
 }
 
 /* Attached data begins behind the header, or where HeaderSize says, which counts from the file's begin. */
-static int place_data(meta_header *h, uint64_t header_end) {
+static int locate_data(meta_header *h, uint64_t header_end) {
     h->from.start = header_end;
     h->from.byte_skip = h->header_size;
     if (h->from.files.count || h->header_size <= 0) return 0;
@@ -322,7 +322,7 @@ static int fill_matrix(const meta_header *h, double matrix[3][4]) {
         if (!h->direction.count) matrix[axis][axis] = spacing;
         if (h->offset.count) matrix[axis][3] = h->offset.values[axis];
     }
-    return world_place(h->request, h->path, matrix);
+    return world_complete(h->request, h->path, matrix);
 }
 
 static void list_axes(const meta_header *h, axes *out) {
@@ -350,7 +350,7 @@ int metaimage_read(const read_request *request, const mapping *file, dataset *ou
     layout l;
     int status;
     if ((status = dataset_image_begin(out)) || (status = parse_header(&h, &text)) || (status = check_header(&h, out)) ||
-        (status = fill_matrix(&h, out->blocks->matrix)) || (status = place_data(&h, text.position)))
+        (status = fill_matrix(&h, out->blocks->matrix)) || (status = locate_data(&h, text.position)))
         goto cleanup;
     if (*h.repeated) dataset_notice(out, "its header has '%s' twice: the last is taken", h.repeated);
     list_axes(&h, &stored);

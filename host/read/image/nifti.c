@@ -280,7 +280,7 @@ static int fill_matrix(nifti_header *h, dataset *out) {
     snprintf(out->space, sizeof out->space, "%s", code > 0 ? space_name(code) : "voxel size only");
     if (code > 0) snprintf(out->world, sizeof out->world, "RAS");
     if (!h->request->has_spacing && !h->is_analyze) dataset_set_units(out, units_name(h->units));
-    return world_place(h->request, h->path, out->blocks->matrix);
+    return world_complete(h->request, h->path, out->blocks->matrix);
 }
 
 static void fill_scaling(const nifti_header *h, layout *l, dataset *out) {
@@ -331,8 +331,8 @@ static int find_start(const nifti_header *h, int is_single, size_t file_bytes, u
                     h->vox_offset);
     *start = (uint64_t)offset;
     if (!is_single || *start >= single_bytes(h)) return 0;
-    int has_room = file_bytes < bytes + header_bytes(h) || file_bytes >= bytes + single_bytes(h);
-    if (has_room)
+    int has_space = file_bytes < bytes + header_bytes(h) || file_bytes >= bytes + single_bytes(h);
+    if (has_space)
         *start = single_bytes(h);
     else if (*start < header_bytes(h))
         *start = header_bytes(h);

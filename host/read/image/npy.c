@@ -174,7 +174,7 @@ int npy_read(const read_request *request, const mapping *file, dataset *out) {
     }
     l.swapped = h.is_big_endian == (__BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__);
     for (int a = 0; a < 3; a++) out->blocks->matrix[a][a] = 1;
-    if ((status = world_place(request, h.path, out->blocks->matrix))) return status;
+    if ((status = world_complete(request, h.path, out->blocks->matrix))) return status;
     source from = {.header_path = h.path, .start = h.start, .axes = &stored, .axes_per_file = stored.count};
     snprintf(out->format, sizeof out->format, "numpy");
     return source_load(request, &from, &l, out);

@@ -135,7 +135,7 @@ static void complete_matrix(double matrix[3][4], int column) {
 
 /* Fills the matrix for one axis of space, which is axis a of the file. Without a direction it runs along its own axis.
  */
-static void place_axis(const nrrd_header *h, int a, int space, dataset *out) {
+static void set_axis(const nrrd_header *h, int a, int space, dataset *out) {
     if (h->has_directions && !isnan(h->directions[a][0])) {
         for (int r = 0; r < 3; r++) out->blocks->matrix[r][space] = h->directions[a][r];
         return;
@@ -154,13 +154,13 @@ static void place_axis(const nrrd_header *h, int a, int space, dataset *out) {
 int nrrd_matrix(const nrrd_header *h, const axes *a, dataset *out) {
     int space = 0;
     for (int i = 0; i < a->count; i++)
-        if (a->role[i] == AXIS_SPACE) place_axis(h, i, space++, out);
+        if (a->role[i] == AXIS_SPACE) set_axis(h, i, space++, out);
     int is_known = h->has_origin && !isnan(h->origin[0]);
     for (int r = 0; r < 3 && is_known; r++) out->blocks->matrix[r][3] = h->origin[r];
     if (h->has_origin && !is_known && !h->request->has_origin)
         dataset_notice(out, "the space origin is not known (NaN), it is taken for 0");
     for (; space < 3; space++) complete_matrix(out->blocks->matrix, space);
-    return world_place(h->request, h->path, out->blocks->matrix);
+    return world_complete(h->request, h->path, out->blocks->matrix);
 }
 
 void nrrd_units(nrrd_header *h, const char *text) {

@@ -73,12 +73,12 @@ static int no_memory(const char *path) {
 static int add(const char *path, const char *folder, const char *name, slice_list *list) {
     if (list->count == SLICES_MOST)
         return fail(STATUS_INPUT, "%s: has more than %d slices; name a part of them", path, SLICES_MOST);
-    if (list->count == list->room) {
-        const size_t room = list->room ? 2 * list->room : 64;
-        char **paths = realloc(list->paths, room * sizeof *paths);
+    if (list->count == list->capacity) {
+        const size_t capacity = list->capacity ? 2 * list->capacity : 64;
+        char **paths = realloc(list->paths, capacity * sizeof *paths);
         if (!paths) return no_memory(path);
         list->paths = paths;
-        list->room = room;
+        list->capacity = capacity;
     }
     if (asprintf(&list->paths[list->count], "%s%s", folder, name) < 0) return no_memory(path);
     list->count++;

@@ -12,7 +12,7 @@
 
 typedef struct slice_list {
     char **paths; /* from malloc */
-    size_t count, room;
+    size_t count, capacity;
 } slice_list;
 
 /* Whether the name is that of a folder, or has such a number in it and is itself the name of no file. */

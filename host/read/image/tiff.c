@@ -97,7 +97,7 @@ static int read_stack(stack *s, dataset *out) {
     if (!status) status = layout_make(request->path, &stored, s->shape.element, request, &l);
     for (int axis = 0; axis < 3; axis++)
         out->blocks->matrix[axis][axis] = s->notes.is_imagej ? s->notes.spacing[axis] : 1;
-    if (!status) status = world_place(request, request->path, out->blocks->matrix);
+    if (!status) status = world_complete(request, request->path, out->blocks->matrix);
     if (status) return status;
     unsigned char *samples = samples_allocate(l.bytes);
     if (!samples)

@@ -246,7 +246,7 @@ static int check_geometry(legacy *r) {
     if (r->blanking_count && r->blanking_count != b->point_count)
         return legacy_fail(r, "has BLANKING of %" PRId64 " points, but %" PRId64 " points", r->blanking_count,
                            b->point_count);
-    return b->kind == BLOCK_UNIFORM ? world_place(r->request, r->path, b->matrix) : 0;
+    return b->kind == BLOCK_UNIFORM ? world_complete(r->request, r->path, b->matrix) : 0;
 }
 
 /* POINT_DATA and CELL_DATA, which end the geometry. */

@@ -59,7 +59,7 @@ int legacy_type(legacy *r, int *type) {
 }
 
 /* Fails where the rest of the file is too short for so many values, at the fewest bytes that they can take. */
-static int check_room(const legacy *r, const char *what, int type, uint64_t count) {
+static int check_size(const legacy *r, const char *what, int type, uint64_t count) {
     uint64_t needed, left = r->size - r->at;
     if (type >= LEGACY_STRING || !r->is_binary)
         needed = count > UINT64_MAX / 2 ? UINT64_MAX : count * 2 - (count > 0 && type != LEGACY_STRING);
@@ -173,7 +173,7 @@ int legacy_array(legacy *r, const char *what, int type, int64_t tuples, int64_t 
     if (unfit) *unfit = 0;
     if (__builtin_mul_overflow((uint64_t)tuples, (uint64_t)components, &count)) count = UINT64_MAX;
     if (r->is_binary && count && type < LEGACY_STRING) legacy_skip_line(r);
-    if ((status = check_room(r, what, type, count))) return status;
+    if ((status = check_size(r, what, type, count))) return status;
     if (!out) {
         status = skip_values(r, what, type, count);
     } else if (r->is_binary && type == wanted && type <= TC_I8 && count >= IN_PLACE_FROM) {

@@ -45,22 +45,22 @@ static int is_near(double matrix[3][4], double own[3][4], const dataset_block *b
     return 1;
 }
 
-/* The place of an image, which its pieces tell, too. */
+/* Where an image lies, which its pieces tell, too. */
 static int set_matrix(grid_join *j) {
     const vtk_index *x = j->list->index;
     read_request plain = *j->list->request;
     double matrix[3][4], own[3][4];
     plain.has_spacing = plain.has_origin = 0;
     memcpy(matrix, j->list->pieces->block->matrix, sizeof matrix);
-    int status = x->has_place ? vtk_xml_matrix(&plain, x->origin, x->spacing, x->direction, matrix) : 0;
+    int status = x->has_world ? vtk_xml_matrix(&plain, x->origin, x->spacing, x->direction, matrix) : 0;
     for (size_t p = 0; p < j->list->count && !status; p++) {
         const grid_piece *piece = &j->list->pieces[p];
         memcpy(own, piece->block->matrix, sizeof own);
         if (!is_near(matrix, own, piece->block))
             status = fail(STATUS_INPUT, "%s: has another Origin, Spacing or Direction than %s", piece->path,
-                          x->has_place ? x->path : j->list->pieces->path);
+                          x->has_world ? x->path : j->list->pieces->path);
     }
-    if (!status) status = world_place(j->list->request, x->path, matrix);
+    if (!status) status = world_complete(j->list->request, x->path, matrix);
     memcpy(j->whole->matrix, matrix, sizeof matrix);
     return status;
 }

@@ -78,7 +78,7 @@ static int begin_file(index_parser *p, const char *name, const char **attributes
 static int parse_vector(index_parser *p, const char **attributes, const char *name, double *values, int count) {
     const char *text = attribute(attributes, name);
     if (!text) return 0;
-    p->index->has_place = 1;
+    p->index->has_world = 1;
     if (parse_numbers(text, values, count) == count) return 0;
     return wrong_attribute(p->index, p->grid_name, name, text, count == 3 ? "three numbers" : "nine numbers");
 }

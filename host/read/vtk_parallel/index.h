@@ -31,7 +31,7 @@ typedef struct vtk_index {
     int64_t ghost_levels;
     index_extent whole; /* structured grids */
     double origin[3], spacing[3], direction[9];
-    int has_place; /* whether Origin, Spacing or Direction stand there */
+    int has_world; /* whether Origin, Spacing or Direction stand there */
 
     data_names files;
     index_extent *extents; /* structured grids: of each file's piece */

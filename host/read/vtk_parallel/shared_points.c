@@ -1,8 +1,8 @@
 /*
  * shared_points.c - which points of the pieces of an unstructured grid are one; see shared_points.h
  *
- * Points are sorted by a key, their global number or a hash of their place, by a sort that takes time in proportion to
- * their count whatever they are. Those of one key follow each other then.
+ * Points are sorted by a key, their global number or a hash of their position, by a sort that takes time in proportion
+ * to their count whatever they are. Those of one key follow each other then.
  */
 #include "vtk_parallel/shared_points.h"
 
@@ -79,25 +79,25 @@ static size_t piece_of(const point_join *j, int64_t point) {
     return low;
 }
 
-/* The bits of a coordinate; 0 and -0 are one place. */
-static uint64_t place_bits(const dataset_block *b, int64_t n) {
+/* The bits of a coordinate; 0 and -0 are one position. */
+static uint64_t position_bits(const dataset_block *b, int64_t n) {
     const double at = coordinate_at(b->points, n) + 0.0;
     uint64_t bits;
     memcpy(&bits, &at, sizeof bits);
     return bits;
 }
 
-static uint64_t place_key(const dataset_block *b, int64_t n) {
+static uint64_t position_key(const dataset_block *b, int64_t n) {
     uint64_t key = 0;
-    for (int a = 0; a < 3; a++) key = mixed(key + place_bits(b, 3 * n + a) + UINT64_C(0x9e3779b97f4a7c15));
+    for (int a = 0; a < 3; a++) key = mixed(key + position_bits(b, 3 * n + a) + UINT64_C(0x9e3779b97f4a7c15));
     return key;
 }
 
-static int compare_places(const point_join *j, int64_t p, int64_t q) {
+static int compare_positions(const point_join *j, int64_t p, int64_t q) {
     const size_t of_p = piece_of(j, p), of_q = piece_of(j, q);
     for (int a = 0; a < 3; a++) {
-        const uint64_t own = place_bits(j->list->pieces[of_p].block, 3 * (p - j->starts[of_p]) + a);
-        const uint64_t other = place_bits(j->list->pieces[of_q].block, 3 * (q - j->starts[of_q]) + a);
+        const uint64_t own = position_bits(j->list->pieces[of_p].block, 3 * (p - j->starts[of_p]) + a);
+        const uint64_t other = position_bits(j->list->pieces[of_q].block, 3 * (q - j->starts[of_q]) + a);
         if (own != other) return own < other ? -1 : 1;
     }
     return 0;
@@ -121,8 +121,8 @@ static int compare_values(const point_join *j, int64_t p, int64_t q) {
 
 static int by_index(const sort_entry *e, const sort_entry *f) { return (e->of > f->of) - (e->of < f->of); }
 
-static int by_place(const void *first, const void *second, void *join) {
-    const int order = compare_places(join, ((const sort_entry *)first)->of, ((const sort_entry *)second)->of);
+static int by_position(const void *first, const void *second, void *join) {
+    const int order = compare_positions(join, ((const sort_entry *)first)->of, ((const sort_entry *)second)->of);
     return order ? order : by_index(first, second);
 }
 
@@ -145,7 +145,7 @@ static void join_group(point_join *j, const sort_entry *e, size_t count) {
     for (size_t n = 0; n < count; n++) {
         j->out->sources[e[n].of] = e[0].of;
         j->out->is_shared[e[n].of] = count > 1;
-        differs |= n && (compare_values(j, e[0].of, e[n].of) != 0 || compare_places(j, e[0].of, e[n].of) != 0);
+        differs |= n && (compare_values(j, e[0].of, e[n].of) != 0 || compare_positions(j, e[0].of, e[n].of) != 0);
     }
     j->out->differing += differs;
 }
@@ -163,23 +163,23 @@ static void join_by_values(point_join *j, sort_entry *e, size_t count) {
     }
 }
 
-/* Points of one place. */
-static void join_place(point_join *j, sort_entry *e, size_t count) {
+/* Points of one position. */
+static void join_position(point_join *j, sort_entry *e, size_t count) {
     if (is_one_of_each(j, e, count))
         join_group(j, e, count);
     else
         join_by_values(j, e, count);
 }
 
-/* Points of one key: nearly always of one place. */
-static void join_places(point_join *j, sort_entry *e, size_t count) {
+/* Points of one key: nearly always of one position. */
+static void join_positions(point_join *j, sort_entry *e, size_t count) {
     int is_one = 1;
-    for (size_t n = 1; n < count && is_one; n++) is_one = compare_places(j, e[0].of, e[n].of) == 0;
-    if (!is_one) qsort_r(e, count, sizeof *e, by_place, j);
+    for (size_t n = 1; n < count && is_one; n++) is_one = compare_positions(j, e[0].of, e[n].of) == 0;
+    if (!is_one) qsort_r(e, count, sizeof *e, by_position, j);
     for (size_t n = 0, end; n < count; n = end) {
         end = is_one ? count : n + 1;
-        while (end < count && compare_places(j, e[n].of, e[end].of) == 0) end++;
-        join_place(j, e + n, end - n);
+        while (end < count && compare_positions(j, e[n].of, e[end].of) == 0) end++;
+        join_position(j, e + n, end - n);
     }
 }
 
@@ -200,12 +200,12 @@ static int join_all(point_join *j, sort_entry *entries, size_t count) {
         if (j->out->by_number)
             status = join_number(j, entries + n, end - n);
         else
-            join_places(j, entries + n, end - n);
+            join_positions(j, entries + n, end - n);
     }
     return status;
 }
 
-/* Points joined by their place keep the order of the pieces. */
+/* Points joined by their position keep the order of the pieces. */
 static void number_in_order(point_join *j, int64_t total) {
     for (int64_t n = 0; n < total; n++) {
         const int64_t source = j->out->sources[n];
@@ -222,7 +222,7 @@ static size_t make_entries(const point_join *j, const uint8_t *is_left_out, sort
             const int64_t point = j->starts[p] + n;
             if (is_left_out[point]) continue;
             entries[count++] =
-                (sort_entry){j->out->by_number ? number_key(numbers, n) : place_key(piece->block, n), point};
+                (sort_entry){j->out->by_number ? number_key(numbers, n) : position_key(piece->block, n), point};
         }
     }
     return count;

@@ -8,17 +8,17 @@
  * starts[count] their sum. */
 typedef struct shared_points {
     int64_t *numbers;   /* of each point: that of the whole's; -1: left out */
-    int64_t *sources;   /* of each point: the one whose place and values the whole takes, itself or an earlier one */
+    int64_t *sources;   /* of each point: the one whose position and values the whole takes, itself or an earlier one */
     uint8_t *is_shared; /* of each point: whether other pieces have it */
     int64_t count;      /* of the whole */
     int64_t differing;  /* points whose values are not the same in all pieces */
-    int64_t unclear;    /* places where a piece has several points, which are not joined */
+    int64_t unclear;    /* positions where a piece has several points, which are not joined */
     int by_number;      /* the file has global numbers, which the whole's points are in the order of */
 } shared_points;
 
-/* Points with the same global number are one, or, without such numbers, those at the same place. Where a piece has
- * several points at a place, those are one that have the same values, if that leaves one of each piece. is_left_out: of
- * each point. Arrays are to be freed, also after a failure. */
+/* Points with the same global number are one, or, without such numbers, those at the same position. Where a piece has
+ * several points at a position, those are one that have the same values, if that leaves one of each piece. is_left_out:
+ * of each point. Arrays are to be freed, also after a failure. */
 int shared_points_find(const piece_list *list, const int64_t *starts, const uint8_t *is_left_out, shared_points *out);
 void shared_points_release(shared_points *s);
 

@@ -31,7 +31,7 @@ int vtk_xml_matrix(const read_request *request, const double origin[3], const do
         for (int a = 0; a < 3; a++) matrix[row][a] = d[3 * row + a] * spacing[a];
         matrix[row][3] = origin[row];
     }
-    return world_place(request, request->path, matrix);
+    return world_complete(request, request->path, matrix);
 }
 
 static int load_axes(xml_reader *r, const xml_piece *piece, dataset_block *block) {

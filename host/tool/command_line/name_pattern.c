@@ -8,14 +8,14 @@
 
 static int is_sign(const char *at) { return at[0] == '%' && at[1] == '%'; }
 
-int name_pattern_has_place(const char *pattern) {
+int name_pattern_has_placeholder(const char *pattern) {
     for (const char *c = pattern; *c; c += 1 + is_sign(c))
         if (*c == '%' && !is_sign(c)) return 1;
     return 0;
 }
 
 int name_pattern_check(const char *option, const char *pattern, size_t value_count, const char *kind) {
-    if (value_count < 2 || name_pattern_has_place(pattern)) return 0;
+    if (value_count < 2 || name_pattern_has_placeholder(pattern)) return 0;
     return fail(STATUS_USAGE, "%s %s: with several %ss the name needs a %%, which stands for the %s", option, pattern,
                 kind, kind);
 }

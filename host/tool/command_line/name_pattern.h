@@ -7,15 +7,15 @@
 
 #include <stddef.h>
 
-/* Whether the value has a place in it. */
-int name_pattern_has_place(const char *pattern);
+/* Whether the value has a placeholder in it. */
+int name_pattern_has_placeholder(const char *pattern);
 
 /* 0 where each of so many values gets a name of its own, else STATUS_USAGE; option and kind ("isovalue") are for its
  * text. */
 int name_pattern_check(const char *option, const char *pattern, size_t value_count, const char *kind);
 
-/* The name with the value in its places, and behind, as "_b0", before its ending; from malloc, NULL with its failure's
- * text without memory. */
+/* The name with the value in its placeholders, and behind, as "_b0", before its ending; from malloc, NULL with its
+ * failure's text without memory. */
 char *name_pattern_fill(const char *pattern, const char *value, const char *behind);
 
 #endif

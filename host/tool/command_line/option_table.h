@@ -43,7 +43,7 @@ typedef struct option {
     const char *value;      /* as --help shows it */
     unsigned commands;
     value_kind kind;
-    size_t place;         /* in struct options */
+    size_t offset;        /* in struct options */
     choice_name *choices; /* or NULL */
     const char *help;     /* lines split by \n */
 } option;

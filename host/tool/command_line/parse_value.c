@@ -325,20 +325,20 @@ static int parse_labels(const option *spec, const char *text, options *o) {
 }
 
 int parse_value(const option *spec, const char *text, options *o) {
-    void *place = (char *)o + spec->place;
+    void *value = (char *)o + spec->offset;
     uint64_t number = 0;
     int status;
     switch (spec->kind) {
     case VALUE_NONE:
-        *(int *)place = 1;
+        *(int *)value = 1;
         return 0;
     case VALUE_TEXT:
     case VALUE_FORMAT:
         if (!*text) return fail(STATUS_USAGE, "%s: the value is empty", spec->name);
-        *(const char **)place = text;
+        *(const char **)value = text;
         return 0;
     case VALUE_CHOICE:
-        return choice_find(spec->name, text, spec->choices, place);
+        return choice_find(spec->name, text, spec->choices, value);
     case VALUE_ISOVALUES:
         return parse_isovalues(text, o);
     case VALUE_INTERVALS:
@@ -348,50 +348,50 @@ int parse_value(const option *spec, const char *text, options *o) {
         if (take_real(&text, &o->nodata) && !*text) return 0;
         return fail(STATUS_USAGE, "--nodata: give one finite number (NaN and infinities are missing in any case)");
     case VALUE_THRESHOLD:
-        if (take_real(&text, place) && !*text && *(double *)place >= 0 && *(double *)place <= 0.5) return 0;
+        if (take_real(&text, value) && !*text && *(double *)value >= 0 && *(double *)value <= 0.5) return 0;
         return fail(STATUS_USAGE, "%s: give one number from 0 to 0.5", spec->name);
     case VALUE_SHARE:
-        if (take_real(&text, place) && !*text && *(double *)place > 0 && *(double *)place < 1) return 0;
+        if (take_real(&text, value) && !*text && *(double *)value > 0 && *(double *)value < 1) return 0;
         return fail(STATUS_USAGE, "%s: give one number above 0 and below 1: the share of the triangles that remains",
                     spec->name);
     case VALUE_DISTANCE:
-        if (take_real(&text, place) && !*text && *(double *)place > 0) return 0;
+        if (take_real(&text, value) && !*text && *(double *)value > 0) return 0;
         return fail(STATUS_USAGE, "%s: give one number above 0: a distance in units of the coordinates", spec->name);
     case VALUE_INDEX:
         status = parse_number(spec, text, INT_MAX, &number);
-        *(int *)place = (int)number;
+        *(int *)value = (int)number;
         return status;
     case VALUE_COMPONENT:
-        *(int *)place = COMPONENT_MAGNITUDE;
+        *(int *)value = COMPONENT_MAGNITUDE;
         if (strcmp(text, "magnitude") == 0) return 0;
         status = parse_number(spec, text, INT_MAX, &number);
-        *(int *)place = (int)number;
+        *(int *)value = (int)number;
         return status ? fail(status, "%s: '%s' is neither a whole number from 0 on nor magnitude", spec->name, text)
                       : 0;
     case VALUE_NUMBER:
-        return parse_number(spec, text, UINT64_MAX, place);
+        return parse_number(spec, text, UINT64_MAX, value);
     case VALUE_SIZE:
     case VALUE_BOUND:
-        return parse_size(spec, text, place);
+        return parse_size(spec, text, value);
     case VALUE_DIMS:
-        return parse_dims(spec, text, place);
+        return parse_dims(spec, text, value);
     case VALUE_SPACING:
     case VALUE_POINT:
-        return parse_reals(spec, text, place);
+        return parse_reals(spec, text, value);
     case VALUE_INDICES:
-        return parse_indices(spec, text, place);
+        return parse_indices(spec, text, value);
     case VALUE_RANGES:
-        return parse_ranges(spec, text, place);
+        return parse_ranges(spec, text, value);
     case VALUE_STEP:
-        return parse_step(spec, text, place);
+        return parse_step(spec, text, value);
     case VALUE_PIECE:
-        return parse_piece(spec, text, place);
+        return parse_piece(spec, text, value);
     case VALUE_CUT:
-        return parse_cut(spec, text, place);
+        return parse_cut(spec, text, value);
     case VALUE_VIEW:
-        return parse_view(spec, text, place);
+        return parse_view(spec, text, value);
     case VALUE_PIXELS:
-        return parse_pixels(spec, text, place);
+        return parse_pixels(spec, text, value);
     case VALUE_LABELS:
         return parse_labels(spec, text, o);
     }

@@ -5,7 +5,7 @@
 #include "option_table.h"
 #include "option_values.h"
 
-/* Puts the value into its place in *o. Every value is checked here, as far as it can be without the input. Returns 0 or
+/* Puts the value into *o. Every value is checked here, as far as it can be without the input. Returns 0 or
  * a status with its text. */
 int parse_value(const option *spec, const char *text, options *o);
 

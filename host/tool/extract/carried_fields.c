@@ -151,7 +151,7 @@ static void extend_range(carried_range *range, const float *values, uint64_t cou
     }
 }
 
-static int make_room(carried_fields *c, int n, uint64_t count) {
+static int reserve_memory(carried_fields *c, int n, uint64_t count) {
     free(c->values[n]);
     c->values[n] = malloc(count ? (size_t)count * sizeof **c->values : 1);
     c->fields[n].values = c->values[n];
@@ -167,7 +167,7 @@ int carried_fields_interpolate(carried_fields *c, engine *e, block_range blocks,
     int status = 0;
     for (int n = 0; n < c->count && !status; n++) {
         const uint64_t count = mesh->vertex_count * (uint64_t)c->from[n].components;
-        status = make_room(c, n, count);
+        status = reserve_memory(c, n, count);
         if (!status) status = engine_carry(e, blocks, how, &c->from[n], c->values[n]);
         if (!status) note_range(c, n, count);
     }
@@ -183,7 +183,7 @@ int carried_fields_of_piece(carried_fields *c, const tc_mesh_piece *piece, uint6
         const size_t plane = (size_t)plane_points * (size_t)from->components * tc_type_bytes(from->type);
         const tc_field field = {sizeof field, from->type, from->components,
                                 (const char *)from->values + (size_t)piece->first_plane * plane};
-        status = make_room(c, n, count);
+        status = reserve_memory(c, n, count);
         if (!status && count)
             status = library_status(tc_interpolate_field(piece->grid, how, &field, c->values[n], count));
         if (!status) note_range(c, n, count);

@@ -141,29 +141,29 @@ static void *resized(void *memory, uint64_t count, size_t tuple) {
     return count <= SIZE_MAX / tuple ? realloc(memory, (size_t)count * tuple) : NULL;
 }
 
-static int make_vertex_room(joined_mesh *j, uint64_t room, const tc_extract_options *how) {
+static int reserve_vertices(joined_mesh *j, uint64_t capacity, const tc_extract_options *how) {
     for (int channel = 0; channel < CHANNEL_COUNT; channel++) {
         if (!channel_is_asked(how, channel)) continue;
-        float *values = resized(j->values[channel], room, tuple_bytes(channel));
+        float *values = resized(j->values[channel], capacity, tuple_bytes(channel));
         if (!values) return 0;
         j->values[channel] = values;
     }
-    j->vertex_room = room;
+    j->vertex_capacity = capacity;
     return 1;
 }
 
-static int make_triangle_room(joined_mesh *j, uint64_t room) {
-    uint32_t *triangles = resized(j->triangles, room, TRIANGLE_BYTES);
+static int reserve_triangles(joined_mesh *j, uint64_t capacity) {
+    uint32_t *triangles = resized(j->triangles, capacity, TRIANGLE_BYTES);
     if (!triangles) return 0;
     j->triangles = triangles;
-    j->triangle_room = room;
+    j->triangle_capacity = capacity;
     return 1;
 }
 
 /* Room for at least so many, and half as many more: later blocks then rarely move what is there. */
-static int make_room(joined_mesh *j, uint64_t vertices, uint64_t triangles, const tc_extract_options *how) {
-    int is_there = vertices <= j->vertex_room || make_vertex_room(j, vertices + vertices / 2, how);
-    if (is_there) is_there = triangles <= j->triangle_room || make_triangle_room(j, triangles + triangles / 2);
+static int reserve_memory(joined_mesh *j, uint64_t vertices, uint64_t triangles, const tc_extract_options *how) {
+    int is_there = vertices <= j->vertex_capacity || reserve_vertices(j, vertices + vertices / 2, how);
+    if (is_there) is_there = triangles <= j->triangle_capacity || reserve_triangles(j, triangles + triangles / 2);
     return is_there ? 0 : fail(STATUS_FAILED, "out of memory for the surface of all blocks");
 }
 
@@ -179,7 +179,7 @@ static int join(joined_mesh *j, const tc_mesh_data *part, const tc_extract_optio
                     "the blocks' surfaces have %" PRIu64 " vertices together, more than the 2^32 - 1 that one mesh "
                     "holds; extract the blocks from files of their own",
                     vertices);
-    int status = make_room(j, vertices, triangles, how);
+    int status = reserve_memory(j, vertices, triangles, how);
     if (status) return status;
     for (int channel = 0; channel < CHANNEL_COUNT && part->vertex_count; channel++)
         if (channel_is_asked(how, channel)) append_values(j, part, channel, sum->vertex_count);
@@ -211,7 +211,7 @@ int engine_extract(engine *e, block_range blocks, const tc_extract_options *how,
     tc_mesh_data part;
     *data = (tc_mesh_data){.struct_size = sizeof *data};
     if (blocks.count == 1 && e->grids[blocks.first]) return extract_block(e, blocks.first, how, data);
-    int status = make_room(&e->joined, 1, 1, how);
+    int status = reserve_memory(&e->joined, 1, 1, how);
     e->fails_alike = status != 0;
     for (int n = blocks.first; n < blocks.first + blocks.count && !status; n++) {
         if ((status = extract_block(e, n, how, &part))) break;

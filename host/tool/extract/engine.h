@@ -14,7 +14,7 @@
 typedef struct joined_mesh {
     float *values[CHANNEL_COUNT];
     uint32_t *triangles;
-    uint64_t vertex_room, triangle_room;
+    uint64_t vertex_capacity, triangle_capacity;
 } joined_mesh;
 
 /* Blocks `first` to first + count - 1: those whose surfaces become one mesh. */

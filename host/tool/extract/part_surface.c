@@ -11,15 +11,15 @@
 #define XXH_INLINE_ALL
 #include <xxhash.h>
 
-/* Bytes of samples that are hashed: so many places, so much at each. */
-enum { PLACES = 64, PLACE_BYTES = 4096 };
+/* Bytes of samples that are hashed: so many pieces of so many bytes. */
+enum { HASHED_PIECES = 64, PIECE_BYTES = 4096 };
 
-static uint64_t hash_places(const void *values, uint64_t bytes, uint64_t seed) {
-    const uint64_t step = bytes / PLACES;
-    if (!values || bytes <= PLACES * PLACE_BYTES) return values ? XXH64(values, bytes, seed) : seed;
-    for (uint64_t n = 0; n < PLACES; n++) {
-        const uint64_t at = n + 1 < PLACES ? n * step : bytes - PLACE_BYTES;
-        seed = XXH64((const char *)values + at, PLACE_BYTES, seed);
+static uint64_t hash_pieces(const void *values, uint64_t bytes, uint64_t seed) {
+    const uint64_t step = bytes / HASHED_PIECES;
+    if (!values || bytes <= HASHED_PIECES * PIECE_BYTES) return values ? XXH64(values, bytes, seed) : seed;
+    for (uint64_t n = 0; n < HASHED_PIECES; n++) {
+        const uint64_t at = n + 1 < HASHED_PIECES ? n * step : bytes - PIECE_BYTES;
+        seed = XXH64((const char *)values + at, PIECE_BYTES, seed);
     }
     return seed;
 }
@@ -33,8 +33,8 @@ static uint64_t hash_grid(const tc_grid_options *g) {
         if (g->axes_f64[axis]) hash = XXH64(g->axes_f64[axis], count * sizeof *g->axes_f64[axis], hash);
     }
     const uint64_t points = (uint64_t)(g->dims[0] * g->dims[1] * g->dims[2]);
-    hash = hash_places(g->points, points * 3 * sizeof *g->points, hash);
-    return hash_places(g->points_f64, points * 3 * sizeof *g->points_f64, hash);
+    hash = hash_pieces(g->points, points * 3 * sizeof *g->points, hash);
+    return hash_pieces(g->points_f64, points * 3 * sizeof *g->points_f64, hash);
 }
 
 static json_t *hash_json(uint64_t hash) {
@@ -50,7 +50,7 @@ static json_t *input_json(const options *o, const tc_grid_options *g, const void
     for (int n = 0; n < o->operand_count; n++)
         if (stat(o->operands[n], &file) == 0 && S_ISREG(file.st_mode))
             json_array_append_new(bytes, json_integer((json_int_t)file.st_size));
-    const uint64_t content = hash_places(blanked, points, hash_places(samples, points * tc_type_bytes(g->type), 0));
+    const uint64_t content = hash_pieces(blanked, points, hash_pieces(samples, points * tc_type_bytes(g->type), 0));
     return json_pack("{s:o, s:o, s:o}", "file_bytes", bytes, "grid", hash_json(hash_grid(g)), "samples",
                      hash_json(content));
 }

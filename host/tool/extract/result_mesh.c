@@ -52,8 +52,8 @@ static int gather_channels(result_mesh *result, uint64_t vertex_count, const uin
     return 0;
 }
 
-int result_mesh_leave(result_mesh *result, uint64_t vertex_count, uint32_t *sources, uint64_t triangle_count,
-                      uint32_t *triangles) {
+int result_mesh_keep(result_mesh *result, uint64_t vertex_count, uint32_t *sources, uint64_t triangle_count,
+                     uint32_t *triangles) {
     tc_mesh_data *m = &result->mesh;
     int status = divide(result, vertex_count, sources, triangle_count, triangles);
     if (!status) status = gather_channels(result, vertex_count, sources);
@@ -76,7 +76,7 @@ int result_mesh_drop_degenerate(result_mesh *result, surface_report *s) {
     s->dropped_count += c.dropped_count;
     s->nonmanifold_edges += c.nonmanifold_edges;
     if (status || !c.dropped_count) return status;
-    return result_mesh_leave(result, c.vertex_count, c.sources, c.triangle_count, c.triangles);
+    return result_mesh_keep(result, c.vertex_count, c.sources, c.triangle_count, c.triangles);
 }
 
 void result_mesh_tell_dropped(const surface_report *s) {

@@ -23,11 +23,11 @@ typedef struct result_mesh {
 /* The engine's surface, as it is; to be released. */
 void result_mesh_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, result_mesh *out);
 
-/* Leaves of the mesh these triangles, with these vertices: sources are those of the mesh so far, ascending, and
+/* Keeps only these triangles of the mesh, with these vertices: sources are those of the mesh so far, ascending, and
  * vertices and triangles of each part still follow each other. Both arrays are the result's from here on, after a
  * failure too. Returns 0 or STATUS_FAILED. */
-int result_mesh_leave(result_mesh *result, uint64_t vertex_count, uint32_t *sources, uint64_t triangle_count,
-                      uint32_t *triangles);
+int result_mesh_keep(result_mesh *result, uint64_t vertex_count, uint32_t *sources, uint64_t triangle_count,
+                     uint32_t *triangles);
 
 /* Drops triangles of zero area, and adds to s how many. Returns 0 or STATUS_FAILED. */
 int result_mesh_drop_degenerate(result_mesh *result, surface_report *s);

@@ -188,7 +188,7 @@ int surface_simplify(const options *o, result_mesh *mesh, surface_report *s, int
     s->simplified.triangles_before += m->triangle_count;
     if (!status) status = simplify_blocks(o, mesh, s, &left, good);
     s->simplified.ms += now_ms() - begin;
-    if (!status) return result_mesh_leave(mesh, left.vertex_count, left.sources, left.triangle_count, left.triangles);
+    if (!status) return result_mesh_keep(mesh, left.vertex_count, left.sources, left.triangle_count, left.triangles);
     free(left.triangles);
     free(left.sources);
     return status;

@@ -157,7 +157,7 @@ static void cells_text(const dataset_block *b) {
     printf("%s\n", b->cell_count ? "" : "none");
 }
 
-void describe_place_text(const dataset *d, const dataset_block *b) {
+void describe_world_text(const dataset *d, const dataset_block *b) {
     printf("spacing      ");
     for (int axis = 0; axis < 3; axis++) printf(" %s", shortest_number(describe_spacing(b, axis)).text);
     printf("\nworld space   %s", d->space[0] ? d->space : "not named");
@@ -194,7 +194,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
             printf("first point   %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     }
     part_report_text("part          ", b);
-    if (b->kind == BLOCK_UNIFORM) describe_place_text(d, b);
+    if (b->kind == BLOCK_UNIFORM) describe_world_text(d, b);
     if (points || cells)
         printf("blanked       %s, %s\n", counted(points, "point", "points").text, counted(cells, "cell", "cells").text);
     if (b->point_count)

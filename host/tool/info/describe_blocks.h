@@ -17,7 +17,7 @@ void describe_blocks_text(const dataset *d);
 double describe_spacing(const dataset_block *b, int axis);
 
 /* Of a uniform block: spacing, world space and matrix, as lines. */
-void describe_place_text(const dataset *d, const dataset_block *b);
+void describe_world_text(const dataset *d, const dataset_block *b);
 
 /* Of an image with several values per sample: how many, what they are, the range of each, as lines. */
 void describe_values_text(const dataset_block *b);

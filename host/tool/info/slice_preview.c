@@ -66,7 +66,7 @@ static void choose_axes(const dataset_block *b, int axes[3]) {
     }
 }
 
-static double place_at(const dataset_block *b, int axis, int64_t n) {
+static double position_at(const dataset_block *b, int axis, int64_t n) {
     const double *row = b->matrix[0];
     if (b->kind == BLOCK_RECTILINEAR) return coordinate_at(b->axes[axis], n);
     if (b->kind == BLOCK_CURVILINEAR) return (double)n;
@@ -76,12 +76,12 @@ static double place_at(const dataset_block *b, int axis, int64_t n) {
 
 /* Whether the axis runs against x, y or z of the picture. */
 static int is_turned(const dataset_block *b, int axis, int world) {
-    if (b->kind == BLOCK_RECTILINEAR) return place_at(b, axis, b->dims[axis] - 1) < place_at(b, axis, 0);
+    if (b->kind == BLOCK_RECTILINEAR) return position_at(b, axis, b->dims[axis] - 1) < position_at(b, axis, 0);
     return b->kind == BLOCK_UNIFORM && along(b, axis, world) < 0;
 }
 
-/* Fills places, room for all three axes, rising from 0. */
-static void set_axes(const dataset_block *b, double *places, sliced_volume *v) {
+/* Fills positions, memory for all three axes, rising from 0. */
+static void set_axes(const dataset_block *b, double *positions, sliced_volume *v) {
     const int64_t strides[3] = {1, b->dims[0], b->dims[0] * b->dims[1]};
     int axes[3] = {0, 1, 2};
     choose_axes(b, axes);
@@ -91,9 +91,10 @@ static void set_axes(const dataset_block *b, double *places, sliced_volume *v) {
         v->count[world] = count;
         v->stride[world] = turned ? -strides[axis] : strides[axis];
         v->first += turned ? (count - 1) * strides[axis] : 0;
-        v->places[world] = places;
+        v->positions[world] = positions;
         for (int64_t n = 0; n < count; n++)
-            *places++ = fabs(place_at(b, axis, turned ? count - 1 - n : n) - place_at(b, axis, turned ? count - 1 : 0));
+            *positions++ =
+                fabs(position_at(b, axis, turned ? count - 1 - n : n) - position_at(b, axis, turned ? count - 1 : 0));
     }
 }
 
@@ -127,8 +128,8 @@ int slice_preview_write(const options *o, const dataset *d, const scalar *field,
                     o->operands[0]);
     const dataset_block *b = &d->blocks[block];
     const scalar_block *samples = &field->blocks[block];
-    double *places = malloc((size_t)(b->dims[0] + b->dims[1] + b->dims[2]) * sizeof *places);
-    if (!places) return fail(STATUS_FAILED, "out of memory for the places of slices");
+    double *positions = malloc((size_t)(b->dims[0] + b->dims[1] + b->dims[2]) * sizeof *positions);
+    if (!positions) return fail(STATUS_FAILED, "out of memory for the positions of slices");
     sliced_volume v = {.type = samples->type,
                        .samples = samples->samples,
                        .blanked = samples->blanked_points,
@@ -136,8 +137,8 @@ int slice_preview_write(const options *o, const dataset *d, const scalar *field,
                        .nodata = samples->nodata};
     tell(o, d, block);
     set_range(s, &v);
-    set_axes(b, places, &v);
+    set_axes(b, positions, &v);
     const int status = draw(o, &v);
-    free(places);
+    free(positions);
     return status;
 }

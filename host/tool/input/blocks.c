@@ -25,7 +25,7 @@ static int block_status(int status, int n, int block_count) {
 }
 
 /* Where samples of a structured block lie, and what is blanked. */
-static void describe_place(const dataset_block *from, tc_grid_options *grid) {
+static void describe_world(const dataset_block *from, tc_grid_options *grid) {
     tc_grid_options_init(grid);
     memcpy(grid->dims, from->dims, sizeof grid->dims);
     memcpy(grid->first_index, from->first, sizeof grid->first_index);
@@ -47,7 +47,7 @@ static void describe_place(const dataset_block *from, tc_grid_options *grid) {
 static const tc_grid_options *describe_whole(const dataset_block *b, tc_grid_options *whole) {
     enum { SAMPLES_MOST = 1 << 24 };
     if (!b->whole) return NULL;
-    describe_place(b->whole, whole);
+    describe_world(b->whole, whole);
     if (b->kind == BLOCK_UNIFORM) part_whole_extent(b, whole->first_index, whole->dims);
     for (int axis = 0; axis < 3; axis++)
         if (whole->dims[axis] < 2 || whole->dims[axis] > SAMPLES_MOST) return NULL;
@@ -55,7 +55,7 @@ static const tc_grid_options *describe_whole(const dataset_block *b, tc_grid_opt
 }
 
 static void describe_grid(const prepared_block *b, tc_grid_options *grid, tc_grid_options *whole) {
-    describe_place(b->source, grid);
+    describe_world(b->source, grid);
     grid->whole = describe_whole(b->source, whole);
     if (!b->scalar) return;
     grid->type = b->scalar->type;

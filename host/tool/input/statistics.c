@@ -146,8 +146,8 @@ static void choose_bins(int all_integers, statistics *s) {
 }
 
 static void count_sample(statistics *s, double value) {
-    double place = s->width > 0.0 ? (0.5 * value - 0.5 * s->low) / s->width * 2.0 : 0.0;
-    int bin = place < 0.0 ? 0 : place >= s->bin_count ? s->bin_count - 1 : (int)place;
+    double position = s->width > 0.0 ? (0.5 * value - 0.5 * s->low) / s->width * 2.0 : 0.0;
+    int bin = position < 0.0 ? 0 : position >= s->bin_count ? s->bin_count - 1 : (int)position;
     s->bins[bin]++;
 }
 

@@ -19,9 +19,9 @@ static mesh_write_options write_options(const options *o) {
                                 .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
 }
 
-/* Of one file of all labels, in whose name no label has a place; option: which names it. */
+/* Of one file of all labels, in whose name no label has a placeholder; option: which names it. */
 static int check_one_file(const options *o, const dataset *d, const char *option, const char *name) {
-    if (name_pattern_has_place(name))
+    if (name_pattern_has_placeholder(name))
         return fail(STATUS_USAGE,
                     "%s %s: %% stands for a label, and one file has all: %sa percent sign in the name is typed %%%%",
                     option, name, name == o->output ? "--separate writes a file for each label; " : "");
@@ -47,7 +47,7 @@ int label_files_check(const options *o, const dataset *d) {
 char *label_file_name(const options *o, uint32_t label) {
     char value[16], behind[17] = "";
     snprintf(value, sizeof value, "%" PRIu32, label);
-    if (o->separate_labels && !name_pattern_has_place(o->output)) snprintf(behind, sizeof behind, "_%s", value);
+    if (o->separate_labels && !name_pattern_has_placeholder(o->output)) snprintf(behind, sizeof behind, "_%s", value);
     return name_pattern_fill(o->output, value, behind);
 }
 

@@ -5,6 +5,7 @@
 #include "failure.h"
 #include "library_status.h"
 #include "mesh_compare.h"
+#include "sample_types.h"
 #include "shortest.h"
 #include "trials.h"
 #include "vectors.h"
@@ -204,8 +205,7 @@ static const char *launch_refusal(const group_run *r, const launch *l) {
 
 /* Likewise for samples of a type. */
 static const char *samples_refusal(const tc_device_info *info, tc_type type, int is_made_in_double) {
-    const int is_wide = type == TC_U32 || type == TC_I32 || type == TC_F64;
-    const int needs_fp64 = is_wide && is_made_in_double;
+    const int needs_fp64 = type_is_wide(type) && is_made_in_double;
     return needs_fp64 && !info->has_fp64 ? "the device has no fp64" : NULL;
 }
 

@@ -10,15 +10,15 @@
 #include <string.h>
 
 void results_add(selftest_results *all, int group, const char *name, trial_end end, const char *text, double ms) {
-    if (all->count == all->room) {
-        size_t room = all->room ? 2 * all->room : 64;
-        trial_result *grown = realloc(all->results, room * sizeof *grown);
+    if (all->count == all->capacity) {
+        size_t capacity = all->capacity ? 2 * all->capacity : 64;
+        trial_result *grown = realloc(all->results, capacity * sizeof *grown);
         if (!grown) {
             all->out_of_memory = 1;
             return;
         }
         all->results = grown;
-        all->room = room;
+        all->capacity = capacity;
     }
     trial_result *r = &all->results[all->count];
     *r = (trial_result){group, strdup(name), strdup(text), end, ms};

@@ -17,7 +17,7 @@ typedef struct trial_result {
 /* What all groups came to. */
 typedef struct selftest_results {
     trial_result *results;
-    size_t count, room;
+    size_t count, capacity;
     int out_of_memory;
 } selftest_results;
 

@@ -123,8 +123,8 @@ static int make_points(const vector *v, selftest_volume *out) {
     out->points = malloc(3 * count * sizeof *out->points);
     if (!out->points) return fail(STATUS_FAILED, "out of memory for the points of a vector");
     for (size_t n = 0; n < count; n++) {
-        const size_t place[3] = {n % nx, n / nx % ny, n / nx / ny};
-        for (int axis = 0; axis < 3; axis++) out->points[3 * n + (size_t)axis] = (float)place[axis];
+        const size_t index[3] = {n % nx, n / nx % ny, n / nx / ny};
+        for (int axis = 0; axis < 3; axis++) out->points[3 * n + (size_t)axis] = (float)index[axis];
     }
     return 0;
 }

@@ -13,7 +13,7 @@
 
 /* Multiples of 32 (i8: of 16), from u8 samples. */
 static void step_samples(const trial *t, size_t count, void *samples) {
-    const unsigned char *bytes = samples; /* converted from the last to the first, in place */
+    const unsigned char *bytes = samples; /* converted from the last to the first, in index */
     field_sample(field_find(t->field), t->dims, TC_U8, NOISE_SEED, 0, t->dims[2], samples);
     for (size_t n = count; n-- > 0;) {
         const unsigned value = bytes[n] & 0xe0u;
@@ -93,8 +93,8 @@ static int make_coordinates(const trial *t, selftest_volume *v) {
     for (uint64_t n = 0; n < nx + ny + nz; n++) v->axes[n] = (float)n + jitter(n);
     for (uint64_t n = 0; n < nx * ny * nz; n++) {
         const uint64_t z = n / nx / ny;
-        const float place[3] = {-(float)(n % nx), (float)(n / nx % ny), (float)z};
-        for (uint64_t axis = 0; axis < 3; axis++) v->points[3 * n + axis] = place[axis] + jitter(3 * n + axis);
+        const float index[3] = {-(float)(n % nx), (float)(n / nx % ny), (float)z};
+        for (uint64_t axis = 0; axis < 3; axis++) v->points[3 * n + axis] = index[axis] + jitter(3 * n + axis);
     }
     return 0;
 }
