@@ -48,7 +48,7 @@ static void print_overview(FILE *out) {
 }
 
 static int unknown_command(const char *name) {
-    const char *names[COMMANDS_MOST];
+    const char *names[COMMANDS_MOST] = {NULL};
     for (size_t n = 0; n < command_count; n++) names[n] = command_list[n].name;
     const char *meant = similar_name(name, names, command_count);
     if (meant) return fail(STATUS_USAGE, "there is no command '%s'; did you mean %s?", name, meant);

@@ -43,7 +43,8 @@ static void add_array(zip_file *z, const char *name, const char *type, int colum
     unsigned char header[HEADER_MOST];
     char file_name[ZIP_NAME_MOST];
     snprintf(file_name, sizeof file_name, "%s.npy", name);
-    zip_add(z, file_name, header, make_header(header, type, records->span.count, columns), records);
+    const size_t length = make_header(header, type, records->span.count, columns);
+    zip_add(z, file_name, header, length, records);
 }
 
 void npz_write(output *o, const shown_mesh *s) {

@@ -1,4 +1,5 @@
-/* test_tiff.c - stacks in TIFF: every form and type, slices in files of their own, what ImageJ notes, damaged files */
+/* test_tiff.c - stacks in TIFF: every form and type, slices in files of their own, what ImageJ and OME-TIFF note,
+ * damaged files */
 #include "tiff_files.h"
 
 static const tiff_form plain = {
@@ -99,6 +100,10 @@ static void test_slices(void) {
         else
             expect_volume(cases[n].name, &r, &e);
     }
+    read_request lost = request_for(file_path("s4"));
+    read_image v;
+    if (!image_read(&lost, &v)) EXPECT(strstr(v.d.notice, "slices 2 and 4"), "a lost slice: notice '%s'", v.d.notice);
+    image_release(&v);
     (void)write_tiff("s1/0009.tif", &plain, 2, 20); /* files of several pages follow each other */
     (void)write_tiff("s1/0010.tif", &plain, 1, 60);
     read_request r = request_for(file_path("s1"));
@@ -144,6 +149,53 @@ static void test_imagej(void) {
     status = image_read(&r, &v);
     EXPECT(!status && v.dims[2] == 2 && v.matrix[2][2] == 1, "ImageJ of nonsense: %s", failure_text());
     image_release(&v);
+}
+
+#define OME_PIXELS(order, c, z, t)                                                                                     \
+    "<?xml version='1.0'?><OME xmlns='http://www.openmicroscopy.org/Schemas/OME/2016-06'><Image ID='Image:0'>"         \
+    "<Pixels DimensionOrder='" order "' Type=\"uint16\" SizeX='5' SizeY='4' SizeC='" c "' SizeZ='" z "' SizeT='" t     \
+    "' PhysicalSizeX='0.5' PhysicalSizeY=\"0.25\" PhysicalSizeZ='1.5' "
+
+static void test_ome(void) {
+    static const double matrix[12] = {0.5, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 1.5, 0};
+    tiff_form f = plain;
+    f.description = OME_PIXELS("XYZCT", "2", "3", "2") "PhysicalSizeXUnit='mm'></Pixels></Image></OME>";
+    read_request r = write_tiff("a.tif", &f, 12, 0);
+    r.component = r.frame = 1;
+    read_image v;
+    int status = image_read(&r, &v);
+    EXPECT(!status && v.dims[0] == 5 && v.dims[1] == 4 && v.dims[2] == 3, "OME: %s", failure_text());
+    for (uint64_t n = 0; !status && n < 60; n++) /* page z + 3 (c + 2 t) */
+        EXPECT(image_value(&v, n) == test_value(TC_U16, n % 20 + 20 * (n / 20 + 3 * (1 + 2))), "OME: sample %d",
+               (int)n);
+    EXPECT(status || !memcmp(v.matrix, matrix, sizeof matrix), "OME: spacing");
+    image_release(&v);
+
+    f.description = OME_PIXELS("XYCZT", "2", "3", "1") "/></Image></OME>";
+    r = write_tiff("a.tif", &f, 6, 0);
+    r.component = 1;
+    status = image_read(&r, &v);
+    EXPECT(!status && v.dims[2] == 3 && image_value(&v, 20) == test_value(TC_U16, 60), "OME, channels first: %s",
+           failure_text());
+    image_release(&v);
+
+    f.description = OME_PIXELS("XYCZT", "2", "9", "1") "/></Image></OME>"; /* other files have the rest */
+    r = write_tiff("a.tif", &f, 6, 0);
+    status = image_read(&r, &v);
+    EXPECT(!status && v.dims[2] == 6, "OME of several files: %s", failure_text());
+    image_release(&v);
+
+    static const char *const nonsense[] = {OME_PIXELS("XYCZT", "1e300", "-3", "x") "/>",
+                                           OME_PIXELS("XYCCC", "2", "3", "1"), OME_PIXELS("XYCZ", "2", "3", "1"),
+                                           "http://www.openmicroscopy.org/Schemas/OME <Pixels DimensionOrder='XYZ",
+                                           "openmicroscopy.org/Schemas/OME"};
+    for (size_t n = 0; n < sizeof nonsense / sizeof *nonsense; n++) {
+        f.description = nonsense[n];
+        r = write_tiff("a.tif", &f, 6, 0);
+        status = image_read(&r, &v);
+        EXPECT(!status && v.dims[2] == 6, "OME of nonsense %d: %s", (int)n, failure_text());
+        image_release(&v);
+    }
 }
 
 static void test_packed_and_placed(void) {
@@ -205,6 +257,7 @@ int main(void) {
     test_lower_resolution();
     test_slices();
     test_imagej();
+    test_ome();
     test_packed_and_placed();
     test_failures();
     folder_remove();

@@ -23,7 +23,7 @@ static void *allocate_in_file(size_t bytes) {
     const int file = entry ? temporary_file(bytes) : -1;
     void *memory = file < 0 ? MAP_FAILED : mmap(NULL, bytes, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
     if (file >= 0) close(file);
-    if (memory == MAP_FAILED) {
+    if (!entry || memory == MAP_FAILED) {
         free(entry);
         return NULL;
     }

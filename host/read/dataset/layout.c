@@ -36,13 +36,16 @@ static int count_elements(const char *path, const axes *from, int element, layou
             return fail(STATUS_INPUT, "%s: says %" PRId64 " samples along axis %d; at least 1 is needed", path,
                         from->size[a], a + 1);
         if (__builtin_mul_overflow(out->count, (uint64_t)from->size[a], &out->count))
-            return fail(STATUS_INPUT, "%s: its sizes multiply to more than 2^64 samples; the header is damaged", path);
+            return fail(STATUS_INPUT,
+                        "%s: its sizes, of the header or --dims, multiply to more than 2^64 samples: they are wrong",
+                        path);
         if (from->role[a] != AXIS_SPACE && from->size[a] > 1 && several[from->role[a]]++)
             return fail(STATUS_INPUT, "%s: has more axes than three of space, one of components and one of frames",
                         path);
     }
     if (__builtin_mul_overflow(out->count, element_bytes(element), &out->bytes) || out->bytes > INT64_MAX / 8)
-        return fail(STATUS_INPUT, "%s: its sizes ask for more than 2^60 bytes; the header is damaged", path);
+        return fail(STATUS_INPUT,
+                    "%s: its sizes, of the header or --dims, ask for more than 2^60 bytes: they are wrong", path);
     return 0;
 }
 

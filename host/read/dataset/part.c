@@ -370,8 +370,9 @@ static int find_box(const read_request *request, const dataset *d, dataset_block
         if (box->count[axis] >= 2 || b->dims[axis] < 2) continue;
         *is_there = 0;
         if (d->block_count == 1)
-            return fail(STATUS_USAGE, "%s: %s leaves %" PRId64 " sample along %c, and a surface needs two or more: %s",
-                        request->path, options_of(request, axis), box->count[axis], 'x' + axis,
+            return fail(STATUS_USAGE, "%s: %s %s %" PRId64 " sample along %c, and a surface needs two or more: %s",
+                        request->path, options_of(request, axis),
+                        strchr(options_of(request, axis), ' ') ? "leave" : "leaves", box->count[axis], 'x' + axis,
                         size_text(d, all, size));
     }
     return 0;

@@ -145,6 +145,32 @@ int slices_list(const char *path, slice_list *list) {
     return is_folder ? 0 : check_numbers(path, &n, list);
 }
 
+/* Where the last number of a name begins and ends; 0: it has none, or too long a one. */
+static int last_number(const char *name, numbered *n) {
+    size_t end = strlen(name);
+    while (end && !isdigit((unsigned char)name[end - 1])) end--;
+    size_t begin = end;
+    while (begin && isdigit((unsigned char)name[begin - 1])) begin--;
+    *n = (numbered){name, name + end, begin, 1};
+    return end > begin && end - begin <= DIGITS_MOST;
+}
+
+int slices_have_gap(const slice_list *list, int64_t gap[2]) {
+    numbered n;
+    int64_t least = INT64_MAX;
+    if (list->count < 3 || !last_number(name_of(list->paths[0]), &n)) return 0;
+    for (size_t s = 1; s < list->count; s++) {
+        const int64_t before = number_in(&n, name_of(list->paths[s - 1])), own = number_in(&n, name_of(list->paths[s]));
+        if (before < 0 || own <= before) return 0;
+        if (own - before < least) least = own - before;
+    }
+    for (size_t s = 1; s < list->count; s++) {
+        gap[0] = number_in(&n, name_of(list->paths[s - 1])), gap[1] = number_in(&n, name_of(list->paths[s]));
+        if (gap[1] - gap[0] != least) return 1;
+    }
+    return 0;
+}
+
 void slices_release(slice_list *list) {
     for (size_t s = 0; s < list->count; s++) free(list->paths[s]);
     free(list->paths);

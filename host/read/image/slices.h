@@ -9,6 +9,7 @@
 #define SLICES_H
 
 #include <stddef.h>
+#include <stdint.h>
 
 typedef struct slice_list {
     char **paths; /* from malloc */
@@ -21,6 +22,10 @@ int slices_are_named(const char *path);
 /* Lists the files. 0, or a status with its message: none, a number is left out, or the folder cannot be read. To be
  * released in any case. */
 int slices_list(const char *path, slice_list *list);
+
+/* Whether the files' names differ in one number, whose steps are not all alike, as where a slice is lost: gap[0] and
+ * gap[1] are the numbers on either side of the first longer step. */
+int slices_have_gap(const slice_list *list, int64_t gap[2]);
 void slices_release(slice_list *list);
 
 #endif

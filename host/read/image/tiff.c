@@ -1,9 +1,9 @@
 /*
  * tiff.c - stacks of images in TIFF files: pages of one, or of several that lie beside each other (slices.h)
  *
- * Columns are x, rows y, pages z; several values of a pixel are components. Where ImageJ has written the file, its
- * channels are components, too, its frames frames, and its distances are the spacing. Pages are counted in a first
- * pass, so that memory is taken once.
+ * Columns are x, rows y, pages z; several values of a pixel are components. Of files of ImageJ and OME-TIFF channels
+ * are components, too, frames (times) frames, and their distances are the spacing. Pages are counted in a first pass,
+ * so that memory is taken once.
  */
 #include "image/image.h"
 
@@ -50,27 +50,36 @@ static int measure(stack *s, dataset *out) {
     return 0;
 }
 
-/* ImageJ writes channels, slices and frames in this order; a series in time without slices is taken for slices. */
-static int list_axes(stack *s, axes *stored) {
+/* A series in time without slices is taken for slices. */
+static int list_axes(stack *s, axes *stored, dataset *out) {
+    static const enum axis_role roles[TIFF_DIMENSIONS] = {AXIS_COMPONENT, AXIS_SPACE, AXIS_FRAME};
     const tiff_notes *n = &s->notes;
     *stored = (axes){.count = 3,
                      .size = {s->shape.samples, s->shape.width, s->shape.height},
                      .role = {AXIS_COMPONENT, AXIS_SPACE, AXIS_SPACE}};
-    if (n->is_imagej && s->files.count == 0 && n->images > s->all_pages)
+    if (n->writer == TIFF_IMAGEJ && s->files.count == 0 && n->images > s->all_pages)
         return fail(STATUS_INPUT,
                     "%s: holds %" PRId64 " images, but describes %" PRId64
                     " of them, as ImageJ does beyond 4 GiB; save it as raw data, or in parts",
                     s->request->path, n->images, s->all_pages);
-    const int is_series = n->is_imagej && s->files.count == 0 && s->shape.samples == 1 &&
-                          n->channels * n->slices * n->frames == s->all_pages && n->channels * n->slices > 1;
-    const int64_t sizes[3] = {is_series ? n->channels : 1, is_series ? n->slices : s->all_pages,
-                              is_series ? n->frames : 1};
-    static const enum axis_role roles[3] = {AXIS_COMPONENT, AXIS_SPACE, AXIS_FRAME};
-    const int takes_frames = is_series && n->slices == 1;
-    for (int axis = 0; axis < 3; axis++) {
-        if (takes_frames && axis == 1) continue;
-        stored->size[stored->count] = sizes[axis];
-        stored->role[stored->count++] = takes_frames && axis == 2 ? AXIS_SPACE : roles[axis];
+    const int64_t channels = n->sizes[TIFF_CHANNELS], slices = n->sizes[TIFF_SLICES], frames = n->sizes[TIFF_FRAMES];
+    const int is_series = n->writer != TIFF_PLAIN && s->files.count == 0 && s->shape.samples == 1 &&
+                          channels * slices * frames == s->all_pages && channels * slices > 1;
+    const int takes_frames = is_series && slices == 1;
+    if (n->writer == TIFF_OME && s->files.count == 0 && !is_series && n->images != s->all_pages * s->shape.samples)
+        dataset_notice(out,
+                       "OME-TIFF of %" PRId64 " channels, %" PRId64 " slices and %" PRId64 " times, but %" PRId64
+                       " pages: these are taken as slices, as they come",
+                       channels, slices, frames, s->all_pages);
+    if (!is_series) {
+        stored->size[stored->count] = s->all_pages;
+        stored->role[stored->count++] = AXIS_SPACE;
+    }
+    for (int axis = 0; axis < TIFF_DIMENSIONS && is_series; axis++) {
+        const int dimension = n->order[axis];
+        if (takes_frames && dimension == TIFF_SLICES) continue;
+        stored->size[stored->count] = n->sizes[dimension];
+        stored->role[stored->count++] = takes_frames && dimension == TIFF_FRAMES ? AXIS_SPACE : roles[dimension];
     }
     return 0;
 }
@@ -93,10 +102,10 @@ static int read_stack(stack *s, dataset *out) {
     axes stored;
     layout l;
     int status = measure(s, out);
-    if (!status) status = list_axes(s, &stored);
+    if (!status) status = list_axes(s, &stored, out);
     if (!status) status = layout_make(request->path, &stored, s->shape.element, request, &l);
-    for (int axis = 0; axis < 3; axis++)
-        out->blocks->matrix[axis][axis] = s->notes.is_imagej ? s->notes.spacing[axis] : 1;
+    for (int axis = 0; axis < 3; axis++) out->blocks->matrix[axis][axis] = s->notes.spacing[axis];
+    if (s->notes.units && !request->has_spacing) dataset_set_units(out, s->notes.units);
     if (!status) status = world_complete(request, request->path, out->blocks->matrix);
     if (status) return status;
     unsigned char *samples = samples_allocate(l.bytes);
@@ -116,6 +125,12 @@ int tiff_read(const read_request *request, const mapping *file, dataset *out) {
     stack s = {.request = request};
     int status = dataset_image_begin(out);
     if (!status && !file->bytes && slices_are_named(request->path)) status = slices_list(request->path, &s.files);
+    int64_t gap[2];
+    if (!status && slices_have_gap(&s.files, gap))
+        dataset_notice(out,
+                       "has slices %" PRId64 " and %" PRId64 ", but none between them: slices are taken as equally "
+                       "far apart",
+                       gap[0], gap[1]);
     if (!status) status = read_stack(&s, out);
     slices_release(&s.files);
     free(s.pages);

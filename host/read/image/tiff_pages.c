@@ -80,9 +80,11 @@ static int drop_warning(TIFF *tiff, void *user, const char *module, const char *
     return 1;
 }
 
-/* Whether libtiff says that there is no memory, and not that the file asks for too much. */
+/* Whether libtiff says that there is no memory, and not that the file asks for too much. "Out of memory reading of" a
+ * tag is what libtiff 4.7 says of a tag that would be larger than the file. */
 static int is_of_memory(const char *message) {
     static const char *const parts[] = {"memory", "malloc", "No space", "Insertion"};
+    if (strncmp(message, "Out of memory reading of", 24) == 0) return 0;
     for (size_t n = 0; n < sizeof parts / sizeof *parts; n++)
         if (strstr(message, parts[n])) return !strstr(message, "limit");
     return 0;
@@ -215,21 +217,90 @@ static double note_of(const char *description, const char *name, double otherwis
     return otherwise;
 }
 
-static void read_notes(TIFF *t, tiff_notes *n) {
-    const char *text = NULL;
+/* More than there are pages, so that products of sizes do not overflow. */
+static int64_t noted_size(double noted) { return noted <= PAGES_MOST ? (int64_t)noted : PAGES_MOST + 1; }
+
+/* ImageJ writes channels, slices and frames in this order. */
+static void read_imagej(TIFF *t, const char *text, tiff_notes *n) {
+    static const char *const names[TIFF_DIMENSIONS] = {"channels", "slices", "frames"};
     float per_unit[2] = {0, 0};
-    *n = (tiff_notes){.spacing = {1, 1, 1}};
-    if (!TIFFGetField(t, TIFFTAG_IMAGEDESCRIPTION, &text) || !text || strncmp(text, "ImageJ=", 7) != 0) return;
-    n->is_imagej = 1;
+    n->writer = TIFF_IMAGEJ;
     n->images = (int64_t)note_of(text, "images", 1);
-    n->channels = (int64_t)note_of(text, "channels", 1);
-    n->slices = (int64_t)note_of(text, "slices", 1);
-    n->frames = (int64_t)note_of(text, "frames", 1);
+    for (int d = 0; d < TIFF_DIMENSIONS; d++) {
+        n->sizes[d] = noted_size(note_of(text, names[d], 1));
+        n->order[d] = d;
+    }
     n->spacing[2] = note_of(text, "spacing", 1);
     TIFFGetField(t, TIFFTAG_XRESOLUTION, &per_unit[0]);
     TIFFGetField(t, TIFFTAG_YRESOLUTION, &per_unit[1]);
     for (int axis = 0; axis < 2; axis++)
         if (per_unit[axis] > 0 && per_unit[axis] < 1e9f) n->spacing[axis] = 1 / (double)per_unit[axis];
+}
+
+/* The value of an attribute of the XML tag that begins at `tag`, with its end in *length; NULL where it has none. One
+ * tag is all that is needed of OME-XML, so builds without expat read it too. */
+static const char *attribute_of(const char *tag, const char *name, size_t *length) {
+    const size_t name_length = strlen(name);
+    for (const char *at = tag + strcspn(tag, " \t\r\n>"); *at && *at != '>';) {
+        at += strspn(at, " \t\r\n/");
+        const char *quote = at + strcspn(at, "\"'>");
+        if (!*quote || *quote == '>') return NULL;
+        const size_t value = strcspn(quote + 1, *quote == '"' ? "\"" : "'");
+        *length = value;
+        if (strncmp(at, name, name_length) == 0 && (at[name_length] == '=' || at[name_length] == ' ')) return quote + 1;
+        if (!quote[1 + value]) return NULL;
+        at = quote + value + 2;
+    }
+    return NULL;
+}
+
+static double number_of(const char *tag, const char *name, double otherwise) {
+    size_t length;
+    const char *text = attribute_of(tag, name, &length);
+    char *end;
+    const double value = text ? strtod(text, &end) : 0;
+    return text && end == text + length && value > 0 && value < 1e9 ? value : otherwise;
+}
+
+/* Micrometres where no unit stands there, as the model has it. */
+static const char *unit_of(const char *tag, const char *name) {
+    static const char *const known[][2] = {{"nm", "nm"}, {"mm", "mm"}, {"cm", "cm"}, {"m", "m"}};
+    size_t length;
+    const char *text = attribute_of(tag, name, &length);
+    for (size_t n = 0; text && n < sizeof known / sizeof *known; n++)
+        if (length == strlen(known[n][0]) && strncmp(text, known[n][0], length) == 0) return known[n][1];
+    return !text || strncmp(text, "\xc2\xb5m", 3) == 0 || strncmp(text, "\xce\xbcm", 3) == 0 ? "um" : NULL;
+}
+
+static void read_ome(const char *text, tiff_notes *n) {
+    static const char kinds[] = "CZT";
+    static const char *const sizes[TIFF_DIMENSIONS] = {"SizeC", "SizeZ", "SizeT"};
+    static const char *const steps[3] = {"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
+    const char *tag = strstr(text, "<Pixels"), *units = tag ? unit_of(tag, "PhysicalSizeXUnit") : NULL;
+    size_t length;
+    const char *order = tag ? attribute_of(tag, "DimensionOrder", &length) : NULL;
+    if (!tag) tag = strstr(text, ":Pixels"), order = tag ? attribute_of(tag, "DimensionOrder", &length) : NULL;
+    if (!order || length != 5 || strncmp(order, "XY", 2) != 0) return;
+    for (int d = 0; d < TIFF_DIMENSIONS; d++) {
+        const char *kind = memchr(kinds, order[2 + d], TIFF_DIMENSIONS);
+        if (!kind || memchr(order + 2, order[2 + d], (size_t)d)) return;
+        n->order[d] = (int)(kind - kinds);
+        n->sizes[d] = noted_size(number_of(tag, sizes[d], 1));
+    }
+    n->writer = TIFF_OME;
+    n->images = n->sizes[0] * n->sizes[1] * n->sizes[2];
+    for (int axis = 0; axis < 3; axis++) n->spacing[axis] = number_of(tag, steps[axis], 1);
+    n->units = attribute_of(tag, steps[0], &length) ? units : NULL;
+}
+
+static void read_notes(TIFF *t, tiff_notes *n) {
+    const char *text = NULL;
+    *n = (tiff_notes){.spacing = {1, 1, 1}};
+    if (!TIFFGetField(t, TIFFTAG_IMAGEDESCRIPTION, &text) || !text) return;
+    if (strncmp(text, "ImageJ=", 7) == 0)
+        read_imagej(t, text, n);
+    else if (strstr(text, "openmicroscopy.org/Schemas/OME"))
+        read_ome(text, n);
 }
 
 int tiff_measure(const char *path, const mapping *file, tiff_shape *shape, tiff_notes *notes, int64_t *pages,

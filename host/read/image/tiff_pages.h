@@ -19,11 +19,17 @@ typedef struct tiff_shape {
     int element; /* stored_types.h; in memory they have this machine's byte order */
 } tiff_shape;
 
-/* What ImageJ writes into the description of the first page; 0: nothing of that. */
+/* What pages beyond one plane are of, in a series. */
+enum { TIFF_CHANNELS, TIFF_SLICES, TIFF_FRAMES, TIFF_DIMENSIONS };
+
+/* What ImageJ or OME-TIFF (ome-model.readthedocs.io) say in the description of the first page. */
 typedef struct tiff_notes {
-    int is_imagej;
-    int64_t images, channels, slices, frames;
+    enum { TIFF_PLAIN, TIFF_IMAGEJ, TIFF_OME } writer;
+    int64_t images;                 /* planes of the series */
+    int64_t sizes[TIFF_DIMENSIONS]; /* of each dimension */
+    int order[TIFF_DIMENSIONS];     /* the dimension that runs first, second and last */
     double spacing[3];
+    const char *units; /* NULL: not known */
 } tiff_notes;
 
 /* Looks at every page of a mapped file: *pages is how many there are, *passed how many are passed over. The first page
