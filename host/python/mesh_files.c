@@ -16,7 +16,7 @@
 FILES_API uint64_t mesh_files_hash(const tc_mesh_data *mesh);
 FILES_API int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
                               const char *const *names, const int *components, const float *const *values,
-                              int *is_relative);
+                              const double *origin_at, int *is_relative);
 FILES_API int mesh_files_save_complex(const char *path, const char *format, const complex_file *complex,
                                       int field_count, const char *const *names, const int *components,
                                       const float *const *values);
@@ -30,11 +30,14 @@ uint64_t mesh_files_hash(const tc_mesh_data *mesh) {
     return mesh_hash(mesh->positions, mesh->vertex_count, mesh->triangles, mesh->triangle_count);
 }
 
-/* Returns a status of exit_status.h. *is_relative: whether the file's coordinates are relative to the mesh's origin. */
+/* Returns a status of exit_status.h. origin_at: as of mesh_write_options. *is_relative: whether the file's coordinates
+ * are relative to the mesh's origin. */
 int mesh_files_save(const char *path, const char *format, const tc_mesh_data *mesh, int field_count,
-                    const char *const *names, const int *components, const float *const *values, int *is_relative) {
+                    const char *const *names, const int *components, const float *const *values,
+                    const double *origin_at, int *is_relative) {
     vertex_array *fields = calloc((size_t)field_count + 1, sizeof *fields);
-    mesh_write_options options = {.format = format, .fields = fields, .field_count = field_count};
+    mesh_write_options options = {
+        .format = format, .fields = fields, .field_count = field_count, .origin_at = origin_at};
     if (!fields) return fail(STATUS_FAILED, "out of memory for %d fields", field_count);
     for (int n = 0; n < field_count; n++) fields[n] = (vertex_array){names[n], components[n], values[n], ROLE_DATA};
     int status = mesh_write_check(path, &options);

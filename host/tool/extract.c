@@ -177,9 +177,11 @@ static int judge_surface(surface_job *w) {
     s->coarse_vertices =
         s->coarse_in_mesh.lost > s->coarse_in_file.lost ? s->coarse_in_mesh.lost : s->coarse_in_file.lost;
     if (!s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
+    if (!s->has_dropped && j->o->output) surface_files_tell_joined(j->o, s);
+    if (j->o->closed && !j->o->check) surface_tell_closed(&j->blocks, s);
     result_mesh_tell_dropped(s);
     surface_simplify_tell(j->o, s);
-    return !status && j->o->check ? surface_judge(&j->blocks, s, &w->is_good) : status;
+    return !status && j->o->check ? surface_judge(&j->blocks, s, j->o->closed, &w->is_good) : status;
 }
 
 static int write_preview(surface_job *w, block_range blocks, const result_mesh *mesh) {

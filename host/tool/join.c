@@ -84,7 +84,8 @@ static int open_file(join_job *j) {
                                   .field_count = l->array_count - 1 - l->channel_count,
                                   .world = json_string_value(json_object_get(surface, "world")),
                                   .units = json_string_value(json_object_get(surface, "units")),
-                                  .origin_at = options_given(j->o, "--origin-at") ? j->o->origin_at : NULL};
+                                  .origin_at =
+                                      surface_file_zero(j->o, json_is_true(json_object_get(surface, "suits_world")))};
     for (int n = 0; n < j->how.field_count; n++) {
         const part_array *a = &l->arrays[l->channel_count + n];
         j->fields[n] = (vertex_array){a->name, a->components, NULL, ROLE_DATA};

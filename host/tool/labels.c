@@ -12,6 +12,7 @@
 #include "extract/engine.h"
 #include "extract/surface_preview.h"
 #include "failure.h"
+#include "input/cell_sizes.h"
 #include "input/input.h"
 #include "labels/label_cells.h"
 #include "labels/label_files.h"
@@ -189,7 +190,9 @@ static int check_label(label_job *j, label_row *row) {
 static int write_label(label_job *j, label_row *row) {
     const double begin = now_ms();
     row->path = label_file_name(j->o, row->label);
-    const int status = row->path ? label_file_write(j->o, &j->data, row->path, &j->one.mesh, &j->files) : STATUS_FAILED;
+    const int status =
+        row->path ? label_file_write(j->o, &j->data, blocks_suit_world(&j->blocks), row->path, &j->one.mesh, &j->files)
+                  : STATUS_FAILED;
     j->report.times.write_ms += now_ms() - begin;
     return status;
 }
@@ -232,9 +235,11 @@ static int publish(label_job *j) {
     if (!j->is_good) return 0;
     if (j->o->output && !j->o->separate_labels) {
         j->report.path = label_file_name(j->o, 0);
-        status = j->report.path ? label_file_write(j->o, &j->data, j->report.path, &j->mesh, &j->files) : STATUS_FAILED;
+        status = j->report.path ? label_file_write(j->o, &j->data, blocks_suit_world(&j->blocks), j->report.path,
+                                                   &j->mesh, &j->files)
+                                : STATUS_FAILED;
     }
-    if (!status) label_files_tell(j->o, &j->mesh);
+    if (!status) label_files_tell(j->o, blocks_suit_world(&j->blocks), &j->mesh);
     if (!status && j->o->preview) status = write_preview(j);
     if (!status) status = output_group_publish(&j->files);
     j->report.times.write_ms += now_ms() - begin;

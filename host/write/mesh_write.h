@@ -65,6 +65,9 @@ typedef struct mesh_write_options {
                                            its own (output.h); NULL: this one alone */
 } mesh_write_options;
 
+/* Whether triangles share vertices in the file: not in STL. */
+int mesh_write_shares_vertices(const char *path, const mesh_write_options *options);
+
 /* Adds the writer of VTKHDF, which is refused without it: a part of the library mesh_write_hdf5, so that programs that
  * do without libhdf5 need not have it. To be called once, before the others. */
 void mesh_write_add_hdf5(void);

@@ -155,6 +155,11 @@ int mesh_write_has_doubles(const char *path, const mesh_write_options *options) 
     return !choose_format(path, options, &f) && f->has_doubles;
 }
 
+int mesh_write_shares_vertices(const char *path, const mesh_write_options *options) {
+    const format *f;
+    return !choose_format(path, options, &f) && f->counted != COUNTS_triangles;
+}
+
 int mesh_write_lacks(const char *path, const mesh_write_options *options, vertex_role role) {
     const format *f;
     return !choose_format(path, options, &f) && !has_role(f, role);

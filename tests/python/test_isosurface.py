@@ -110,6 +110,23 @@ def test_carried_values_are_written(surface, tmp_path):
         mesh.save(tmp_path / "a.stl")
 
 
+def test_files_far_from_zero(ball, tmp_path):
+    """STL holds float32: without origin_at it counts from the mesh's origin."""
+    mesh = tetracubes.isosurface(ball, 0.0, origin=(5e6, 0, 0), axes="zyx")
+    corners = np.dtype([("normal", "<3f4"), ("corners", "<9f4"), ("more", "<u2")])
+
+    def lowest():
+        return np.frombuffer((tmp_path / "a.stl").read_bytes()[84:], corners)["corners"].reshape(-1, 3).min(axis=0)
+
+    with pytest.warns(RuntimeWarning, match="relative to"):
+        mesh.save(tmp_path / "a.stl")
+    np.testing.assert_array_equal(lowest(), mesh.positions.min(axis=0))
+    mesh.save(tmp_path / "a.stl", origin_at=mesh.origin - [1, 2, 3])
+    np.testing.assert_allclose(lowest(), mesh.positions.min(axis=0) + [1, 2, 3], rtol=1e-6)
+    with pytest.raises(ValueError, match="three finite numbers"):
+        mesh.save(tmp_path / "a.stl", origin_at=(0, 0))
+
+
 def test_save_fails(surface, tmp_path):
     with pytest.raises(ValueError, match="ply"):
         surface().save(tmp_path / "a.gltf")
@@ -130,6 +147,7 @@ def test_missing(ball, surface):
     assert 0 < len(wanted.faces) < len(surface().faces)
     assert surface(mask=~holes).hash == wanted.hash
     assert surface(mask=(~holes).astype(np.int64)).hash == wanted.hash
+    assert surface(mask=np.where(holes, np.nan, 1)).hash == wanted.hash
     assert surface(np.where(holes, np.float32(-99.9), ball), nodata=-99.9).hash == wanted.hash
     assert surface(np.ma.array(ball, mask=holes)).hash == wanted.hash
     half = holes & (np.arange(33) < 16)

@@ -370,6 +370,22 @@ class Reports(Case):
             self.assertEqual(one["hash"], other["hash"])
             self.assertLess(one["triangles"], whole["triangles"])
 
+    def test_closed_beside_missing_cells(self):
+        """Two boxes of cells that meet along an edge only: the closed surface has four triangles there."""
+        samples = [100.0] * 50
+        samples[3 + 5 * 1] = samples[1 + 5 * 3] = float("nan")
+        with open(self.path("boxes.raw"), "wb") as f:
+            f.write(struct.pack("<50f", *samples))
+        extract = ["extract", self.path("boxes.raw"), "--dims", "5,5,2", "--type", "f32", "--iso", "50", "--closed",
+                   "-o", self.path("boxes.stl")]
+        for engine in self.engines():
+            self.assertIn("--check counts such edges", self.expect(0, *extract, "--engine", engine).stderr)
+            self.refuses(3, *extract, "--engine", engine, "--check", says="meet only along an edge")
+        samples[1 + 5 * 3] = 100.0
+        with open(self.path("boxes.raw"), "wb") as f:
+            f.write(struct.pack("<50f", *samples))
+        self.assertNotIn("meet", self.expect(0, *extract, "--check").stderr)
+
     def test_raw_byte_order_skip_and_placement(self):
         values = [(n * 37) % 251 * 100 for n in range(5 * 4 * 3)]
         with open(self.path("little.raw"), "wb") as f:

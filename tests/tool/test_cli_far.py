@@ -151,6 +151,37 @@ class Far(GridCase):
         result = self.expect(0, "extract", source, "--iso", ISO, "-o", out, "--quiet", "--engine", "reference")
         self.assertEqual(result.stderr, "")
 
+    def test_stl_where_float32_is_fine(self):
+        """As of a CT whose table lies 1,000 mm away: world coordinates, in streams, parts and regions too."""
+        source, iso = self.path("ct.nrrd"), "127.5"
+        at = ["--spacing", "1,1,1", "--origin", "-10,-10,1000", "--engine", "reference"]
+        self.expect(0, "generate", "sphere", "--dims", "20,20,24", "--type", "f32", "-o", source)
+        for ending, read in (("stl", read_stl), ("ply", read_ply)):
+            out = self.path("ct." + ending)
+            result = self.expect(0, "extract", source, "--iso", iso, "-o", out, *at)
+            self.assertEqual(result.stderr, "")
+            points, _, _ = read(out)
+            self.assertGreater(min(p[2] for p in points), 1000)
+        stl = self.path("ct.stl")
+        streamed = self.path("streamed.stl")
+        self.expect(0, "extract", source, "--iso", iso, "-o", streamed, "--stream", *at)
+        parts = [self.path(f"{n}.part") for n in (0, 1)]
+        for n, part in enumerate(parts):
+            self.expect(0, "extract", source, "--iso", iso, "-o", part, "--part", f"{n}/2", *at)
+        joined = self.path("joined.stl")
+        self.assertEqual(self.expect(0, "join", *parts, "-o", joined).stderr, "")
+        with open(stl, "rb") as file:
+            whole = file.read()
+        for path in (streamed, joined):
+            with open(path, "rb") as file:
+                self.assertEqual(file.read(), whole, path)
+        half = self.path("half.stl")
+        self.expect(0, "extract", source, "--iso", iso, "-o", half, "--roi", ":,:,0:8", *at)
+        self.assertGreater(min(p[2] for p in read_stl(half)[0]), 1000)
+        far = self.path("far.stl")
+        result = self.expect(0, "extract", source, "--iso", iso, "-o", far, "--spacing", "1,1,1", "--origin", "-10,-10,1e6", *at[4:])
+        self.assertIn("relative to", result.stderr)
+
     def test_origin_at(self):
         near, _ = self.both("far.vtu")
         at = [value - 3 for value in UTM]

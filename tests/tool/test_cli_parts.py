@@ -480,7 +480,7 @@ class Usage(PartCase):
                     (["--roi", ":,9:,:"], "along y reaches outside 0:9"),
                     (["--roi", ":,3:4,:"], "--roi leaves 1 sample along y.*two or more.*11 x 9 x 10"),
                     (["--step", "11,1,1"], "--step leaves 1 sample along x.*11 x 9 x 10"),
-                    (["--step", "3", "--roi", ":,2:5,:"], "--roi and --step leaves 1 sample along y"),
+                    (["--step", "3", "--roi", ":,2:5,:"], "--roi and --step leave 1 sample along y"),
                     (["--roi", "1:2"], "not three ranges"), (["--roi", "1:2,3:4,5:6,7:8"], "not three ranges"),
                     (["--roi", "1-2,:,:"], "not three ranges"), (["--roi", "1.5:3,:,:"], "not three ranges"),
                     (["--roi", "1:99999999999999999999,:,:"], "not three ranges"),

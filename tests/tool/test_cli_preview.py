@@ -190,6 +190,8 @@ class Preview(PictureCase):
         self.refuses(2, "info", kept, "--preview", kept, says="is the input itself")
         same = self.path("x.png")
         self.refuses(2, *extract, "-o", same, "--format", "ply", "--preview", same, says="both name")
+        detour = os.path.join(os.path.dirname(same), ".", "x.png")
+        self.refuses(2, *extract, "-o", same, "--format", "ply", "--preview", detour, says="both name")
         self.refuses(1, *extract, "-o", self.path("a.ply"), "--preview", self.path("no/a.png"), says="create the folder")
         self.refuses(1, "info", volume, "--preview", self.path("no/a.png"), says="create the folder")
         for view in ("up", "30", "30,91", "nan,0", "400,0", "30,20,10", "", "front,0"):

@@ -167,6 +167,14 @@ class Dropped(GridCase):
         self.assertEqual(parts[0][0] + parts[1][0], rows)
         self.assertEqual(sum(len(part[1]) for part in parts), len(triangles))
 
+    def test_stl_tells(self):
+        """Programs join an STL's vertices by position: where few triangles have no area, they are told of all the same."""
+        values = [x + 10 * (y * y + z * z) for z, y, x in itertools.product(range(9), repeat=3)]
+        grid = [*self.raw("ties.raw", "u16", (9, 9, 9), values), "--iso", "52"]
+        for ending, extra, says in (("stl", [], True), ("ply", [], False), ("stl", ["--drop-degenerate"], False)):
+            result = self.expect(0, "extract", *grid, "--engine", "reference", *extra, "-o", self.path("ties." + ending))
+            self.assertEqual("--drop-degenerate leaves them out" in result.stderr, says, (ending, extra, result.stderr))
+
     def test_needs_a_mesh(self):
         self.refuses(2, "extract", "x.nrrd", "--iso", "1", "--count", "--drop-degenerate", says="--count makes no mesh")
 

@@ -67,7 +67,8 @@ def volume_of(volume: Any, mask: Any, what: str = "volume") -> tuple[np.ndarray,
         mask = _as_numpy(mask, "mask")
         if mask.shape != volume.shape:
             raise ValueError(f"mask has the shape {mask.shape}, and {what} {volume.shape}")
-        missing = (mask == 0) if missing is None else missing | (mask == 0)
+        absent = (mask == 0) | (mask != mask)  # as of the tool: 0, or NaN
+        missing = absent if missing is None else missing | absent
     samples = values_of(np.ma.getdata(volume), what)
     return samples, None if missing is None else np.ascontiguousarray(missing).view(np.uint8)
 

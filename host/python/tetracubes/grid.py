@@ -222,7 +222,7 @@ class Grid(GridBase):
     cell with a missing corner is left out.
     spacing, origin: of samples, in any unit of length; three numbers, or one for all.
     direction: (3, 3), its columns the directions of the axes.
-    mask: booleans of the volume's shape; false: the sample is missing.
+    mask: booleans of the volume's shape; false, 0 or NaN: the sample is missing.
     nodata: samples of this value are missing.
     axes: "zyx" or "xyz": the order of components in spacing, origin, direction, vertices and normals. The volume's axes
     are z, y, x in both.

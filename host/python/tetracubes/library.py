@@ -289,7 +289,7 @@ class complex_file(Structure):
 FILE_FUNCTIONS = {
     "mesh_files_hash": (c_uint64, POINTER(tc_mesh_data)),
     "mesh_files_save": (_STATUS, c_char_p, c_char_p, POINTER(tc_mesh_data), c_int, POINTER(c_char_p), POINTER(c_int),
-                        POINTER(c_void_p), POINTER(c_int)),
+                        POINTER(c_void_p), POINTER(c_double), POINTER(c_int)),
     "mesh_files_save_complex": (_STATUS, c_char_p, c_char_p, POINTER(complex_file), c_int, POINTER(c_char_p),
                                 POINTER(c_int), POINTER(c_void_p)),
     "mesh_files_view": (c_char_p, c_int, POINTER(view_angles)),

@@ -8,6 +8,7 @@ import warnings
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .library import files, tc_mesh_data, view_angles
 
@@ -56,6 +57,16 @@ def _angles(view):
     if not (abs(azimuth) <= 360 and abs(elevation) <= 90):
         raise ValueError(f"view is {view!r}: azimuth goes to 360 degrees, elevation to 90")
     return view_angles(azimuth, elevation)
+
+
+def _point(origin_at):
+    """Three doubles, as the writers take them."""
+    if origin_at is None:
+        return None
+    point = np.asarray(origin_at, np.float64)
+    if point.shape != (3,) or not np.isfinite(point).all():
+        raise ValueError(f"origin_at is {origin_at!r}, not three finite numbers")
+    return (ctypes.c_double * 3)(*point)
 
 
 class Mesh:
@@ -126,13 +137,16 @@ class Mesh:
                             boundary_labels=addresses[3])
         return data, arrays
 
-    def save(self, path: str | os.PathLike, format: str | None = None) -> None:  # pylint: disable=redefined-builtin
+    def save(self, path: str | os.PathLike, format: str | None = None,  # pylint: disable=redefined-builtin
+             origin_at: npt.ArrayLike | None = None) -> None:
         """Writes the mesh: .ply, .vtp, .stl, .obj, .off, .glb, .npz or .html, with normals and values where it has them;
         or a picture of it: .png, as of ``preview``.
 
         The bytes are the tool's: coordinates are x, y, z in world space. An older file stays whole until the new one is
         complete. format: "ply", ..., whatever path ends in. The tool's VTKHDF needs libhdf5, which the package has not:
         .vtp holds the same.
+        origin_at: the point x, y, z that becomes 0, 0, 0 in the file. Without it .stl, .glb and .html, which hold float32
+        alone, count from ``origin`` where that is not 0, with a warning.
         """
         if format is None and os.fsdecode(path).lower().endswith(".png"):
             self.preview(path)
@@ -141,7 +155,7 @@ class Mesh:
         fields, _values = fields_of(self.values)
         is_relative = ctypes.c_int()
         check_written(files.mesh_files_save(os.fsencode(path), None if format is None else format.encode(),
-                                            ctypes.byref(data), *fields, ctypes.byref(is_relative)))
+                                            ctypes.byref(data), *fields, _point(origin_at), ctypes.byref(is_relative)))
         if is_relative.value:
             warnings.warn(f"{os.fspath(path)} has float32 coordinates, relative to {', '.join(map(str, self.origin))}",
                           RuntimeWarning, stacklevel=2)

@@ -150,7 +150,8 @@ static const effect table[] = {
     {COMMAND_EXTRACT, "--soup", BEFORE_READING, has_no_output, TOLD,
      "--soup has no effect without -o FILE: the report is of shared vertices"},
     {COMMAND_EXTRACT, "--normals", BEFORE_READING, file_has_no_normals, TOLD,
-     "--normals has no effect on STL and OFF, which hold no normals of vertices: ply, vtp, obj, glb, npz and html do"},
+     "--normals has no effect on STL and OFF, which hold no normals of vertices: ply, vtp, obj, glb, npz, vtkhdf and "
+     "html do"},
 
     {MAKES, "--verify", BEFORE_READING, has_no_main_engine, REFUSED,
      "--verify compares with the reference engine: it proves nothing about that engine itself; leave out --verify or "

@@ -299,8 +299,9 @@ static int parse_size(const option *spec, const char *text, uint64_t *out) {
 static int parse_number(const option *spec, const char *text, uint64_t most, uint64_t *out) {
     const char *at = text;
     if (!take_whole(&at, out) || *at || *out > most)
-        return fail(STATUS_USAGE, "%s: '%s' is no whole number from 0 to %llu", spec->name, text,
-                    (unsigned long long)most);
+        return most == UINT64_MAX ? fail(STATUS_USAGE, "%s: '%s' is no whole number from 0 on", spec->name, text)
+                                  : fail(STATUS_USAGE, "%s: '%s' is no whole number from 0 to %llu", spec->name, text,
+                                         (unsigned long long)most);
     return 0;
 }
 

@@ -94,6 +94,7 @@ int engine_upload(const options *o, const block_list *blocks, engine *e) {
     e->parts = calloc((size_t)blocks->count + 1, sizeof *e->parts);
     if (!e->grids || !e->parts) return fail(STATUS_FAILED, "out of memory for %d blocks", blocks->count);
     e->block_count = blocks->count;
+    e->suits_world = blocks_suit_world(blocks);
     for (int n = 0; n < blocks->count; n++) {
         int status = block_grid(o, blocks, n, e->context, NULL, &e->grids[n]);
         if (!status && e->grids[n]) status = library_status(tc_grid_origin(e->grids[n], e->parts[n].origin));

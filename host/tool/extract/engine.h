@@ -25,6 +25,7 @@ typedef struct block_range {
 typedef struct engine {
     tc_context *context;
     tc_grid **grids;  /* one per block; NULL of a block with nothing to contour */
+    int suits_world;  /* float32 coordinates may count from 0, 0, 0 (cell_sizes.h) */
     mesh_part *parts; /* what each block gave to the last mesh that it is in, and its origin */
     int block_count;
     tc_mesh *mesh; /* of one block, used for each in turn */

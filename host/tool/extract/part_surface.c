@@ -80,16 +80,16 @@ static json_t *carried_json(const carried_fields *c) {
 
 json_t *part_surface_make(const options *o, const dataset *d, const scalar *field, const carried_fields *carried,
                           const tc_grid_options *grid, const tc_extract_options *how, const void *samples,
-                          const uint8_t *blanked_samples) {
+                          const uint8_t *blanked_samples, int suits_world) {
     json_t *fields_carried = carried_json(carried);
     if (!fields_carried) return NULL;
-    json_t *surface = json_pack("{s:s, s:s, s:s, s:o, s:s, s:o, s:i, s:f, s:s, s:o, s:b, s:o, s:o, s:o}", "version",
-                                tc_version(), "world", d->world, "units", d->units, "dims", integers_json(grid->dims),
-                                "type", tc_type_name(grid->type), "field", string_json(field->name), "component",
-                                field->component, "isovalue", how->isovalue, "method", tc_method_name(how->method),
-                                "snap", how->method == TC_METHOD_SNAP ? json_real(how->snap) : json_null(), "closed",
-                                how->closed, "nodata", o->has_nodata ? json_real(o->nodata) : json_null(), "channels",
-                                channels_json(how), "carried", fields_carried);
+    json_t *surface = json_pack(
+        "{s:s, s:s, s:s, s:b, s:o, s:s, s:o, s:i, s:f, s:s, s:o, s:b, s:o, s:o, s:o}", "version", tc_version(), "world",
+        d->world, "units", d->units, "suits_world", suits_world, "dims", integers_json(grid->dims), "type",
+        tc_type_name(grid->type), "field", string_json(field->name), "component", field->component, "isovalue",
+        how->isovalue, "method", tc_method_name(how->method), "snap",
+        how->method == TC_METHOD_SNAP ? json_real(how->snap) : json_null(), "closed", how->closed, "nodata",
+        o->has_nodata ? json_real(o->nodata) : json_null(), "channels", channels_json(how), "carried", fields_carried);
     json_t *input = input_json(o, grid, samples, blanked_samples);
     if (surface && !json_object_set_new(surface, "input", input)) return surface;
     json_decref(surface);

@@ -9,7 +9,8 @@
 #include <string.h>
 
 void result_mesh_begin(const engine *e, block_range blocks, const tc_mesh_data *mesh, result_mesh *out) {
-    *out = (result_mesh){.mesh = *mesh, .parts = e->parts + blocks.first, .part_count = blocks.count};
+    *out = (result_mesh){
+        .mesh = *mesh, .parts = e->parts + blocks.first, .part_count = blocks.count, .suits_world = e->suits_world};
 }
 
 /* The values of the vertices that are left, from malloc; NULL, with the failure's text set, without memory. */

@@ -13,6 +13,7 @@ typedef struct result_mesh {
     tc_mesh_data mesh;
     const mesh_part *parts; /* what each of its blocks gave to it */
     int part_count;
+    int suits_world; /* as of the engine */
 
     uint32_t *sources; /* of each vertex: the engine's. This and the rest: NULL where nothing was left out */
     uint32_t *triangles;

@@ -4,6 +4,7 @@
 #include "exit_status.h"
 #include "failure.h"
 #include "host_memory.h"
+#include "input/cell_sizes.h"
 #include "input/input.h"
 #include "library_status.h"
 #include "part_surface.h"
@@ -169,12 +170,13 @@ static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *wh
                           .triangle_count = whole->triangle_count,
                           .has_origin = to->report->piece_count > 0};
     memcpy(header.origin, whole->origin, sizeof header.origin);
-    header.surface = part_surface_make(j->in->o, j->in->data, j->in->field, j->in->carried, &j->grid,
-                                       &j->how[to - j->surfaces], j->samples, j->blanked_samples);
+    header.surface =
+        part_surface_make(j->in->o, j->in->data, j->in->field, j->in->carried, &j->grid, &j->how[to - j->surfaces],
+                          j->samples, j->blanked_samples, blocks_suit_world(j->in->blocks));
     int status = header.surface ? 0 : STATUS_FAILED;
     if (!status)
-        status = surface_files_open_pieces(j->in->o, j->in->data, to->report->iso, whole, &header, NULL, j->in->carried,
-                                           &j->files, &to->file);
+        status = surface_files_open_pieces(j->in->o, j->in->data, blocks_suit_world(j->in->blocks), to->report->iso,
+                                           whole, &header, NULL, j->in->carried, &j->files, &to->file);
     part_header_release(&header);
     return status;
 }
@@ -194,8 +196,8 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     if (!j->in->o->output || to->file) return 0;
     if (j->in->o->piece[1]) return open_part(j, to, &whole);
     const output_shared *shared = j->in->team ? &j->shared[to - j->surfaces].shared : NULL;
-    return surface_files_open_pieces(j->in->o, j->in->data, s->iso, &whole, NULL, shared, j->in->carried, &j->files,
-                                     &to->file);
+    return surface_files_open_pieces(j->in->o, j->in->data, blocks_suit_world(j->in->blocks), s->iso, &whole, NULL,
+                                     shared, j->in->carried, &j->files, &to->file);
 }
 
 static void add_bounds(surface_report *s, const tc_mesh_data *m) {

@@ -62,7 +62,7 @@ int surface_check(const tc_mesh_data *m, surface_report *s) {
     return 0;
 }
 
-int surface_judge(const block_list *blocks, const surface_report *s, int *good) {
+int surface_judge(const block_list *blocks, const surface_report *s, int is_closed, int *good) {
     const mesh_topology *t = &s->topology;
     int status = 0;
     *good = !t->nonmanifold_edges && !t->misoriented_edges && !t->orphan_vertices && !t->invalid_triangles &&
@@ -75,6 +75,16 @@ int surface_judge(const block_list *blocks, const surface_report *s, int *good) 
                 counted(t->misoriented_edges, "misoriented edge", "misoriented edges").text,
                 counted(t->orphan_vertices, "unused vertex", "unused vertices").text,
                 counted(t->invalid_triangles, "invalid triangle", "invalid triangles").text);
+    if (!*good && is_closed && t->nonmanifold_edges && blocks_have_missing(blocks))
+        message(
+            "isovalue %s: where two present cells meet only along an edge, beside missing ones, a closed surface has "
+            "four triangles at that edge: leave out one of them, or take in their neighbours",
+            s->iso->text);
+    if (*good && t->nonmanifold_vertices)
+        notice(
+            "isovalue %s: %s, where cells meet in a point or along an edge only, beside missing ones or in the input: "
+            "no fault of the surface",
+            s->iso->text, counted(t->nonmanifold_vertices, "non-manifold vertex", "non-manifold vertices").text);
     if (!s->coarse_vertices) return 0;
     *good = 0;
     message("isovalue %s: check failed: %s where cells are thinner than %d steps of the numbers that coordinates are: "

@@ -14,6 +14,6 @@ int surface_check(const tc_mesh_data *m, surface_report *s);
 
 /* Judges the sums over all meshes of the surface. *good: no fault is left that the input does not explain. Returns 0 or
  * a status. */
-int surface_judge(const block_list *blocks, const surface_report *s, int *good);
+int surface_judge(const block_list *blocks, const surface_report *s, int is_closed, int *good);
 
 #endif

@@ -1,6 +1,7 @@
 #include "surface_files.h"
 
 #include "command_line/name_pattern.h"
+#include "counted.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input/input.h"
@@ -80,18 +81,24 @@ int surface_files_check(const options *o, const dataset *d) {
 
 /* ------------------------------------------------------------------------------------------------------- precision */
 
+const double *surface_file_zero(const options *o, int suits_world) {
+    static const double world[3] = {0, 0, 0};
+    if (options_given(o, "--origin-at")) return o->origin_at;
+    return suits_world ? world : NULL;
+}
+
 static mesh_write_options write_options(const options *o, const result_mesh *mesh) {
     return (mesh_write_options){.format = o->format,
                                 .soup = o->soup,
                                 .parts = mesh->parts,
                                 .part_count = mesh->part_count,
-                                .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+                                .origin_at = surface_file_zero(o, mesh->suits_world)};
 }
 
 void surface_files_tell_relative(const double *origin, int is_own) {
     static const char why[] =
-        "the file holds float32 alone, too coarse so far from zero: its coordinates are relative to";
-    static const char what[] = "PLY, VTP and OBJ hold full coordinates";
+        "the format has float32 alone, too coarse for cells so far from zero: coordinates are relative to";
+    static const char what[] = "PLY, VTP, OBJ, OFF, NPZ and VTKHDF hold full coordinates";
     if (is_own)
         notice("%s each block's origin (--origin-at chooses one point; %s)", why, what);
     else if (origin[0] != 0 || origin[1] != 0 || origin[2] != 0)
@@ -117,6 +124,16 @@ void surface_files_tell_precision(const options *o, int block_count, const surfa
     precision_tell_file(s, options_given(o, "--origin-at"));
 }
 
+void surface_files_tell_joined(const options *o, const surface_report *s) {
+    const mesh_write_options how = {.format = o->format};
+    const uint64_t degenerate = s->summary.degenerate_triangles;
+    if (!degenerate || !notice_wanted() || mesh_write_shares_vertices(o->output, &how)) return;
+    notice(
+        "isovalue %s: %s of zero area: the format does not say which vertices triangles share, and programs that join "
+        "those at one position find edges with more than two triangles: --drop-degenerate leaves them out",
+        s->iso->text, counted(degenerate, "triangle is", "triangles are").text);
+}
+
 /* --------------------------------------------------------------------------------------------------------- writing */
 
 int surface_files_write(const options *o, const dataset *d, const typed_isovalue *iso, int block,
@@ -133,9 +150,9 @@ int surface_files_write(const options *o, const dataset *d, const typed_isovalue
     return status;
 }
 
-int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const part_header *part, const output_shared *shared, const carried_fields *fields,
-                              output_group *group, piece_file **file) {
+int surface_files_open_pieces(const options *o, const dataset *d, int suits_world, const typed_isovalue *iso,
+                              const tc_mesh_data *whole, const part_header *part, const output_shared *shared,
+                              const carried_fields *fields, output_group *group, piece_file **file) {
     piece_file *p = calloc(1, sizeof *p);
     *file = NULL;
     if (!p) return fail(STATUS_FAILED, "out of memory for the file of a surface");
@@ -144,7 +161,7 @@ int surface_files_open_pieces(const options *o, const dataset *d, const typed_is
                                   .field_count = fields->count,
                                   .world = d->world,
                                   .units = d->units,
-                                  .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL,
+                                  .origin_at = surface_file_zero(o, suits_world),
                                   .group = shared ? NULL : group,
                                   .shared = shared};
     p->path = surface_file_name(o, o->output, iso, 0);

@@ -24,6 +24,10 @@ int surface_names_check(const options *o, const dataset *d, const char *option, 
  * without memory. */
 char *surface_file_name(const options *o, const char *pattern, const typed_isovalue *iso, int block);
 
+/* The point that coordinates in a file count from: --origin-at, else 0, 0, 0 where float32 is fine enough for that.
+ * NULL: formats that hold float32 alone have coordinates relative to the mesh's origin (mesh_write.h). */
+const double *surface_file_zero(const options *o, int suits_world);
+
 /* Adds to s where the numbers in the mesh's file will be coarse. Returns STATUS_USAGE where coordinates are beyond
  * float32 and the file has nothing larger. */
 int surface_files_count_coarse(const options *o, const surface_source *source, const result_mesh *mesh,
@@ -36,6 +40,9 @@ void surface_files_tell_relative(const double *origin, int is_own);
 /* Notices: which point the file's coordinates count from, where it is not the input's own; where its numbers are coarse
  * (precision.h). */
 void surface_files_tell_precision(const options *o, int block_count, const surface_report *s);
+
+/* The notice that programs find faults in an STL file with triangles of zero area. */
+void surface_files_tell_joined(const options *o, const surface_report *s);
 
 /* Writes a mesh to the file of the isovalue, or with --blocks separate of the isovalue and the block. The file says in
  * which space and units the input's coordinates are, and waits in the group. */
@@ -50,11 +57,12 @@ typedef struct piece_file {
     char *path;
 } piece_file;
 
-/* whole: as for mesh_file_open. part: NULL, or what the file of --part begins with. shared: NULL, or the file that a
- * team writes, which does not wait in the group. *file is to be closed. Returns 0 or a status. */
-int surface_files_open_pieces(const options *o, const dataset *d, const typed_isovalue *iso, const tc_mesh_data *whole,
-                              const part_header *part, const output_shared *shared, const carried_fields *fields,
-                              output_group *group, piece_file **file);
+/* suits_world: of blocks_suit_world. whole: as for mesh_file_open. part: NULL, or what the file of --part begins with.
+ * shared: NULL, or the file that a team writes, which does not wait in the group. *file is to be closed. Returns 0 or a
+ * status. */
+int surface_files_open_pieces(const options *o, const dataset *d, int suits_world, const typed_isovalue *iso,
+                              const tc_mesh_data *whole, const part_header *part, const output_shared *shared,
+                              const carried_fields *fields, output_group *group, piece_file **file);
 
 /* The next piece, whose first vertex and triangle have these numbers in the file; fields of its vertices. */
 int surface_files_add_piece(piece_file *file, uint64_t first_vertex, uint64_t first_triangle, const tc_mesh_data *piece,

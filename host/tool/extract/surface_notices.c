@@ -110,3 +110,13 @@ int surface_tell_degenerate(const dataset *d, const scalar *field, const surface
     int status = count_ties(d, field, s->iso->value, &ties);
     return status ? status : tell_zero_area(d, field, s, ties);
 }
+
+/* --------------------------------------------------------------------------------------------------------- closed */
+
+void surface_tell_closed(const block_list *blocks, const surface_report *s) {
+    if (!s->triangle_count || !notice_wanted() || !blocks_have_missing(blocks)) return;
+    notice(
+        "isovalue %s: where two present cells meet only along an edge, beside missing ones, a closed surface has four "
+        "triangles at that edge: --check counts such edges",
+        s->iso->text);
+}

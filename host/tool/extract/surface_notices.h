@@ -8,6 +8,7 @@
 
 #include "dataset/dataset.h"
 #include "field/select.h"
+#include "input/blocks.h"
 #include "report.h"
 
 /* An isovalue that was typed as a whole number and is rounded as a double: samples next to it may be on the wrong side.
@@ -21,5 +22,8 @@ int surface_tell_empty(const dataset *d, const scalar *field, const surface_repo
 /* Where more than a fifth of the triangles have no area: why, and what to do. Not where coordinates are coarse, which
  * is told already. s has its summary. Returns 0 or STATUS_FAILED. */
 int surface_tell_degenerate(const dataset *d, const scalar *field, const surface_report *s);
+
+/* Of a closed surface that is not checked: that it may be no manifold beside missing cells. */
+void surface_tell_closed(const block_list *blocks, const surface_report *s);
 
 #endif

@@ -8,7 +8,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-enum { CELLS_PROBED = 4096, CORNERS_MOST = 8 };
+enum { CELLS_PROBED = 4096, CORNERS_MOST = 8, WORLD_STEPS = 1024 };
 
 static int64_t cell_count(const prepared_block *b) {
     const int64_t *d = b->source->dims;
@@ -143,6 +143,21 @@ double step_at(double value, int digits) {
     int exponent;
     frexp(value, &exponent);
     return ldexp(1, exponent - digits > least ? exponent - digits : least);
+}
+
+int blocks_suit_world(const block_list *list) {
+    for (int n = 0; n < list->count; n++) {
+        const dataset_block *from = list->blocks[n].source, *whole = from->whole;
+        const int has_whole = whole && (from->kind == BLOCK_UNIFORM || from->kind == BLOCK_RECTILINEAR);
+        const prepared_block all = {.source = whole};
+        cell_range cells;
+        double step = 0;
+        cell_range_find(has_whole ? &all : &list->blocks[n], 0, &cells);
+        for (int axis = 0; axis < 3; axis++)
+            step += step_at(fmax(fabs(cells.low[axis]), fabs(cells.high[axis])), FLT_MANT_DIG);
+        if (cells.low[0] <= cells.high[0] && !(cells.thickness >= WORLD_STEPS * step)) return 0;
+    }
+    return 1;
 }
 
 float *cell_steps(const prepared_block *b, const coordinate_numbers *numbers) {

@@ -14,6 +14,10 @@ typedef struct cell_range {
 /* Looks at all cells, or, where `all` is 0, at some thousands spread evenly. */
 void cell_range_find(const prepared_block *b, int all, cell_range *out);
 
+/* Whether float32 coordinates of all cells may count from 0, 0, 0: the thinnest cell that is looked at measures 1,024
+ * of their steps at the least. Of a region of a grid (--roi) all of the grid is looked at, so that regions agree. */
+int blocks_suit_world(const block_list *list);
+
 /* Where coordinates count from, and how many binary digits they have: 24 or 53. */
 typedef struct coordinate_numbers {
     double zero[3];

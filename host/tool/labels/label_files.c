@@ -14,9 +14,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static mesh_write_options write_options(const options *o) {
-    return (mesh_write_options){.format = o->format,
-                                .origin_at = options_given(o, "--origin-at") ? o->origin_at : NULL};
+static mesh_write_options write_options(const options *o, int suits_world) {
+    return (mesh_write_options){.format = o->format, .origin_at = surface_file_zero(o, suits_world)};
 }
 
 /* Of one file of all labels, in whose name no label has a placeholder; option: which names it. */
@@ -33,7 +32,7 @@ static int check_one_file(const options *o, const dataset *d, const char *option
 }
 
 int label_files_check(const options *o, const dataset *d) {
-    const mesh_write_options how = write_options(o);
+    const mesh_write_options how = write_options(o, 0);
     int status = preview_check(o);
     if (!status && o->preview) status = check_one_file(o, d, "--preview", o->preview);
     if (status || !o->output) return status;
@@ -51,9 +50,9 @@ char *label_file_name(const options *o, uint32_t label) {
     return name_pattern_fill(o->output, value, behind);
 }
 
-int label_file_write(const options *o, const dataset *d, const char *path, const tc_mesh_data *mesh,
+int label_file_write(const options *o, const dataset *d, int suits_world, const char *path, const tc_mesh_data *mesh,
                      output_group *group) {
-    mesh_write_options how = write_options(o);
+    mesh_write_options how = write_options(o, suits_world);
     how.world = d->world;
     how.units = d->units;
     how.group = group;
@@ -63,8 +62,8 @@ int label_file_write(const options *o, const dataset *d, const char *path, const
 
 char *label_preview_name(const options *o) { return name_pattern_fill(o->preview, "", ""); }
 
-void label_files_tell(const options *o, const tc_mesh_data *mesh) {
-    const mesh_write_options how = write_options(o);
+void label_files_tell(const options *o, int suits_world, const tc_mesh_data *mesh) {
+    const mesh_write_options how = write_options(o, suits_world);
     if (!o->output) return;
     if (!o->separate_labels && mesh_write_lacks_labels(o->output, &how))
         notice("%s: the format does not say which labels a triangle lies between: PLY, VTP, NPZ and VTKHDF do, GLB and "

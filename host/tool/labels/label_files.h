@@ -18,14 +18,14 @@ int label_files_check(const options *o, const dataset *d);
  * ending; from malloc, NULL with its failure's text without memory. */
 char *label_file_name(const options *o, uint32_t label);
 
-/* Writes the mesh to path; it waits in the group. */
-int label_file_write(const options *o, const dataset *d, const char *path, const tc_mesh_data *mesh,
+/* Writes the mesh to path; it waits in the group. suits_world, here and below: of blocks_suit_world. */
+int label_file_write(const options *o, const dataset *d, int suits_world, const char *path, const tc_mesh_data *mesh,
                      output_group *group);
 
 /* The file of the picture, from malloc as that above. */
 char *label_preview_name(const options *o);
 
 /* Notices of what the file's format cannot hold. */
-void label_files_tell(const options *o, const tc_mesh_data *mesh);
+void label_files_tell(const options *o, int suits_world, const tc_mesh_data *mesh);
 
 #endif
