@@ -96,7 +96,14 @@ static void end_by_signal(int number) {
     raise(number);
 }
 
+/* PoCL aborts the process where its variable is set, but empty. */
+static void environment_mend(void) {
+    const char *folder = getenv("POCL_CACHE_DIR");
+    if (folder && !*folder) unsetenv("POCL_CACHE_DIR");
+}
+
 int main(int argc, char **argv) {
+    environment_mend();
     truncation_watch(); /* before drivers start threads and put handlers of their own in front */
     writers_add();
     int status = dispatch(argc, argv);

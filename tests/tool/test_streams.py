@@ -135,6 +135,7 @@ class Homes(GridCase):
         for folder in ["/dev/null/kcache"] + ["/proc/kcache"] * os.path.exists("/proc/self"):
             self.refuses(1, "devices", says=f"cannot write its cache folder {folder}.*POCL_CACHE_DIR",
                          env={"POCL_CACHE_DIR": folder})
+        self.expect(0, "devices", env={"POCL_CACHE_DIR": "", "XDG_CACHE_HOME": self.path("own")})
 
     def test_cache_folder_is_named(self):
         os.chmod(self.folder.name, 0o755)
