@@ -30,7 +30,7 @@ static int shared_devices; /* fewer than ranks, on some machine; 0: none */
 
 /* What is right for the tool alone. */
 static int check_options(const options *o) {
-    if (o->piece[1]) return fail(STATUS_USAGE, "--part is for processes that know nothing of each other: leave it out");
+    if (o->part[1]) return fail(STATUS_USAGE, "--part is for processes that know nothing of each other: leave it out");
     return 0;
 }
 

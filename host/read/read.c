@@ -3,7 +3,7 @@
  */
 #include "read.h"
 
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "file/gunzip.h"
@@ -163,7 +163,7 @@ static int read_as(const read_format *format, const read_request *request, const
     int status = format->read(request, file, out);
     if (!status) tell_repeated(out);
     if (!status) status = check_placement(request, out);
-    if (!status && !out->frames) status = part_cut_blocks(request, out); /* images are cut already */
+    if (!status && !out->frames) status = region_cut_blocks(request, out); /* images are cut already */
     return status;
 }
 

@@ -307,7 +307,7 @@ static int make_streamed(job *j) {
     j->report.surface_count = count;
     for (size_t n = 0; n < count; n++) j->report.times.write_ms += s[n].write_ms;
     for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
-    for (size_t n = 0; n < count && !status && !j->o->piece[1]; n++)
+    for (size_t n = 0; n < count && !status && !j->o->part[1]; n++)
         status = surface_tell_empty(&j->data, &j->field, &s[n]); /* a part may well be empty */
     return status;
 }

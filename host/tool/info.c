@@ -9,7 +9,7 @@
 #include "info/open_choices.h"
 #include "info/slice_preview.h"
 #include "input/input.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 #include "input/statistics.h"
 #include "output.h"
 #include "progress.h"
@@ -72,7 +72,7 @@ static void add_grid(json_t *object, const dataset_block *b) {
                         is_uniform ? json_pack("[o, o, o]", reals_json(b->matrix[0], 4), reals_json(b->matrix[1], 4),
                                                reals_json(b->matrix[2], 4))
                                    : json_null());
-    part_report_json(object, b);
+    region_report_json(object, b);
 }
 
 static void add_field(json_t *object, const facts *f) {
@@ -134,7 +134,7 @@ static void print_image(const facts *f) {
            tc_type_name(b->fields->type));
     if (b->first[0] || b->first[1] || b->first[2])
         printf("first sample  %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
-    part_report_text("part          ", b);
+    region_report_text("part          ", b);
     describe_world_text(f->d, b);
     describe_values_text(b);
 }

@@ -84,7 +84,7 @@ static int read_input(label_job *j) {
 
 /* Whether the block ends within a larger one, along some axis, by --roi or --roi-world. */
 static int is_region(const options *o, const dataset_block *b) {
-    const sample_box *p = &b->part;
+    const sample_box *p = &b->region;
     if (!b->whole || !(options_given(o, "--roi") || options_given(o, "--roi-world"))) return 0;
     for (int axis = 0; axis < 3; axis++)
         if (p->first[axis] > 0 || p->first[axis] + p->count[axis] * p->step[axis] < b->whole->dims[axis]) return 1;

@@ -376,7 +376,7 @@ MUTANTS = [
            ("if (was_read(&out->files, m->identity))", "if (0)", "a file counts as often as it is named"),
            ("if (own->type != f->type || own->components != f->components)", "if (0)", "pieces: arrays of other types"),
            ("own.has_spacing = own.has_origin = 0;", "", "options of placement for each piece"),
-           ("own.part = (part_request){0};", "", "parts of each piece")),
+           ("own.region = (region_request){0};", "", "parts of each piece")),
     *group("host/read/vtk_parallel/index.c",
            ("if (count == FILES_MOST)", "if (0)", "lists without end", LIMITS),
            ("if (p->depth > DEEPEST)", "if (0)", "lists of any depth", LIMITS)),

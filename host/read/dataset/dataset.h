@@ -25,8 +25,8 @@ typedef struct dataset_field {
     int is_scaled;    /* f64, made of stored values by a slope and an intercept that have the precision of f32 */
     const void *values;
     const char *meaning; /* of the components, "red, green, blue"; NULL where unknown */
-    int is_whole;   /* of a block that is a part: values are those of the whole block as the file has them, which need
-                       not be aligned, and part_field (part.h) has to take the part's */
+    int is_whole;   /* of a block that is a region: values are those of the whole block as the file has them, which need
+                       not be aligned, and region_field (region.h) has to take the region's */
     int is_swapped; /* they are in the other byte order: only where is_whole */
 } dataset_field;
 
@@ -57,8 +57,8 @@ typedef struct dataset_block {
     int64_t point_count, cell_count;
     int number; /* in the input, from 0 */
     const struct dataset_block
-        *whole;      /* of a part: the block that it is a part of, without fields; NULL: all there is */
-    sample_box part; /* of a part: its samples in the whole */
+        *whole;        /* of a region: the block that it is a region of, without fields; NULL: all there is */
+    sample_box region; /* of a region: its samples in the whole */
 
     int64_t dims[3];     /* all but unstructured: points along x, y, z; cells are cubes between them */
     int64_t first[3];    /* index of the first point in the whole extent */

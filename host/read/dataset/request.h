@@ -7,7 +7,8 @@
 /* Values of read_request.component that are no component. */
 enum { COMPONENT_OPEN = -1, COMPONENT_MAGNITUDE = -2 };
 
-/* A part of every structured grid (part.h): a box of samples, of which every step-th one is taken along each axis. */
+/* A region of every structured grid (region.h): a box of samples, of which every step-th one is taken along each axis.
+ */
 typedef struct index_ranges {
     int64_t begin[3], end[3]; /* end: behind the last; INT64_MIN and INT64_MAX: all there is */
 } index_ranges;
@@ -16,12 +17,12 @@ typedef struct world_ranges {
     double low[3], high[3]; /* infinite: all there is */
 } world_ranges;
 
-typedef struct part_request {
+typedef struct region_request {
     int has_indices, has_world; /* one of them, or none */
     index_ranges indices;
     world_ranges world;
     int64_t step[3]; /* 0 counts as 1 */
-} part_request;
+} region_request;
 
 typedef struct read_request {
     const char *path;
@@ -42,11 +43,11 @@ typedef struct read_request {
     const char *field;  /* the one that is contoured; NULL: the only one there is */
     int has_nodata;     /* its values equal to nodata (nodata.h) are missing, as are those that are not finite */
     double nodata;
-    part_request part;
+    region_request region;
     const char *mask; /* a volume of the same size, whose zeros say which samples are missing (mask.h); NULL: none */
 
     /* Of a mask that is read: */
-    const struct dataset *like; /* its blocks have to have the sizes of these, and the same parts are taken of them */
+    const struct dataset *like; /* its blocks have to have the sizes of these, and the same regions are taken of them */
     int raw_else;               /* dims and type are those of a file whose format is not known */
 } read_request;
 

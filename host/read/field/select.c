@@ -1,6 +1,6 @@
 #include "field/select.h"
 
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "field/average.h"
@@ -284,13 +284,13 @@ static int scalar_of_part(dataset *d, const dataset_block *b, const dataset_fiel
     dataset_block around;
     sample_box inner;
     if (!f->on_cells || !f->is_whole) {
-        int status = part_field(d, b, f, &own);
+        int status = region_field(d, b, f, &own);
         return status ? status : scalar_of_block(d, b, &own, request, out, has_nodata);
     }
-    int status = part_around(d, b, f, &around, &own, &inner);
+    int status = region_around(d, b, f, &around, &own, &inner);
     if (!status) status = scalar_of_block(d, &around, &own, request, out, has_nodata);
-    if (!status) status = part_points(d, around.dims, out->type, 1, &inner, &out->samples);
-    if (!status) status = part_blanked_cells(d, around.dims, &inner, &out->blanked_cells);
+    if (!status) status = region_points(d, around.dims, out->type, 1, &inner, &out->samples);
+    if (!status) status = region_blanked_cells(d, around.dims, &inner, &out->blanked_cells);
     out->blanked_points = b->blanked_points;
     return status;
 }
@@ -342,11 +342,11 @@ static int field_at_points(dataset *d, const dataset_block *b, const dataset_fie
     dataset_field own;
     dataset_block around;
     sample_box inner;
-    if (!f->on_cells) return part_field(d, b, f, out);
+    if (!f->on_cells) return region_field(d, b, f, out);
     if (!f->is_whole) return average_to_points(d, b, b->blanked_cells, f, out);
-    int status = part_around(d, b, f, &around, &own, &inner);
+    int status = region_around(d, b, f, &around, &own, &inner);
     if (!status) status = average_to_points(d, &around, around.blanked_cells, &own, out);
-    return status ? status : part_points(d, around.dims, out->type, out->components, &inner, &out->values);
+    return status ? status : region_points(d, around.dims, out->type, out->components, &inner, &out->values);
 }
 
 int point_field_select(dataset *d, const char *path, const char *name, point_field *out) {

@@ -2,7 +2,7 @@
 #include "image/source.h"
 
 #include "dataset/array_memory.h"
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "file/mapping.h"
@@ -359,14 +359,14 @@ int source_load(const read_request *request, const source *from, const layout *s
     int status = check_file_count(from);
     if (status) return status;
     describe(from, stored, out);
-    status = part_cut_image(request, out, &cut);
+    status = region_cut_image(request, out, &cut);
     return status ? status : load(from, &cut, out);
 }
 
 int source_take(const read_request *request, const source *from, const layout *stored, void *array, dataset *out) {
     layout cut = *stored;
     describe(from, stored, out);
-    int status = part_cut_image(request, out, &cut);
+    int status = region_cut_image(request, out, &cut);
     if (!status) return take(from, &cut, array, out);
     samples_free(array);
     return status;

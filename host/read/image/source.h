@@ -28,7 +28,7 @@ typedef struct source {
 } source;
 
 /* Fills an image that dataset_image_begin has made and that has its matrix: samples and their memory, type, sizes,
- * frames; of the part that the request asks for (part.h). A notice says where files hold more than is used. */
+ * frames; of the part that the request asks for (region.h). A notice says where files hold more than is used. */
 int source_load(const read_request *request, const source *from, const layout *stored, dataset *out);
 
 /* The same of an array that its format's library has brought into memory from samples_allocate, which is taken over. */

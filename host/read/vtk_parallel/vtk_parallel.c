@@ -30,7 +30,7 @@ static read_request request_of(const read_request *request, const char *path) {
     read_request own = *request;
     own.path = path;
     own.has_spacing = own.has_origin = 0;
-    own.part = (part_request){0};
+    own.region = (region_request){0};
     own.like = NULL;
     return own;
 }

@@ -9,7 +9,7 @@
 
 #include "dataset/array_memory.h"
 #include "dataset/layout.h"
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "dataset/world.h"
 #include "exit_status.h"
 #include "failure.h"
@@ -105,9 +105,9 @@ static int load_bits(xml_reader *r, const xml_array *array, uint64_t count, cons
     return status;
 }
 
-/* Of a part the values are left where they lie, whatever their order of bytes: part_field takes what is wanted. */
+/* Of a part the values are left where they lie, whatever their order of bytes: region_field takes what is wanted. */
 static int load_values(xml_reader *r, const xml_array *array, uint64_t count, dataset_field *field) {
-    const int is_cut = part_is_asked(r->request) && r->doc.kind != BLOCK_UNSTRUCTURED;
+    const int is_cut = region_is_asked(r->request) && r->doc.kind != BLOCK_UNSTRUCTURED;
     xml_values v;
     int status = vtk_xml_open(&r->doc, array, count, &v);
     if (status || !is_cut || !v.stored) return status ? status : vtk_xml_load_opened(r, &v, &field->values);

@@ -28,7 +28,7 @@ static int has_no_file_nor_reference(const situation *s) { return has_no_file(s)
 
 static int has_no_mesh(const situation *s) { return s->o->count; }
 
-static int makes_part(const situation *s) { return s->o->piece[1] != 0; }
+static int makes_part(const situation *s) { return s->o->part[1] != 0; }
 
 static int file_has_no_normals(const situation *s) {
     const mesh_write_options how = {.format = s->o->format};
@@ -68,7 +68,7 @@ static int has_only_cells(const situation *s) {
 static int has_world_range(const situation *s) { return options_given(s->o, "--roi-world"); }
 
 static int is_everything(const situation *s) {
-    return s->o->part.step[0] == 1 && s->o->part.step[1] == 1 && s->o->part.step[2] == 1;
+    return s->o->region.step[0] == 1 && s->o->region.step[1] == 1 && s->o->region.step[2] == 1;
 }
 
 static int has_no_cells(const situation *s) { return !has_cells(s); }

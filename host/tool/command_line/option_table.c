@@ -179,7 +179,7 @@ const option option_table[] = {
      "it is done where it would not (one structured grid; to PLY, VTP, STL and\n"
      "VTKHDF; not with --check, --verify, --soup, --drop-degenerate, --simplify,\n"
      "--preview)"},
-    {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(piece), NULL,
+    {"--part", NULL, "I/N", COMMAND_EXTRACT, VALUE_PIECE, IN(part), NULL,
      "make part I, from 0, of N, and write it to FILE, of any ending; 'tetracubes\n"
      "join' makes the mesh of all N, which other processes may have made; of what\n"
      "can be streamed"},
@@ -214,14 +214,14 @@ const option option_table[] = {
      "their Euclidean length, as f32, of u32, i32 and f64 values as f64"},
     {"--frame", NULL, "N", READS, VALUE_INDEX, IN(frame), NULL,
      "which volume, from 0, of data with a fourth axis"},
-    {"--roi", NULL, "I0:I1,...", TAKES_PARTS, VALUE_INDICES, IN(part.indices), NULL,
+    {"--roi", NULL, "I0:I1,...", TAKES_PARTS, VALUE_INDICES, IN(region.indices), NULL,
      "only the samples of these indices along x, y and z, from I0 to before I1;\n"
      "an end left out, as in 10:,:,:50, is the grid's; regions that share a plane\n"
      "of samples, as 0:65 and 64:129, have surfaces that fit (labels: by --smooth\n"
      "0); structured grids"},
-    {"--roi-world", NULL, "X0:X1,...", TAKES_PARTS, VALUE_RANGES, IN(part.world), NULL,
+    {"--roi-world", NULL, "X0:X1,...", TAKES_PARTS, VALUE_RANGES, IN(region.world), NULL,
      "the same by a box in the input's space: the fewest samples that cover it"},
-    {"--step", NULL, "N[,N,N]", TAKES_PARTS, VALUE_STEP, IN(part.step), NULL,
+    {"--step", NULL, "N[,N,N]", TAKES_PARTS, VALUE_STEP, IN(region.step), NULL,
      "only every Nth sample, from the first one on, along x, y and z; points stay\n"
      "where they are; structured grids"},
     {"--mask", NULL, "FILE", TAKES_PARTS, VALUE_TEXT, IN(mask), NULL,

@@ -83,8 +83,8 @@ typedef struct options {
     int has_nodata;
     double nodata;
     int component, frame; /* -1 where not given; component may be COMPONENT_MAGNITUDE */
-    part_request part;
-    int64_t piece[2]; /* --part: which, from 0, of how many; 0 of 0 where not given */
+    region_request region;
+    int64_t part[2]; /* --part: which, from 0, of how many; 0 of 0 where not given */
     cut_request cut;
     const char *mask;
     uint32_t *labels; /* those that are wanted; NULL: all */

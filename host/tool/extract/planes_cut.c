@@ -17,7 +17,7 @@ int planes_cut_check(const options *o, const team *t, int64_t nz, int64_t count)
     const cut_request *cut = &o->cut;
     const char *what = t ? "ranks" : "parts";
     if (!options_given(o, "--cut")) return 0;
-    if (!t && !o->piece[1])
+    if (!t && !o->part[1])
         return fail(STATUS_USAGE, "--cut says where ranks or parts begin: give --part I/N, or run tetracubes-mpi");
     if (!t && cut->kind == CUT_COST)
         return fail(STATUS_USAGE, "--cut cost is for ranks, which count together: give parts planes to begin at");

@@ -2,7 +2,7 @@
 #include "report.h"
 
 #include "counted.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 #include "output.h"
 #include "planes_cut.h"
 #include "shortest.h"
@@ -112,7 +112,7 @@ static json_t *surface_json(const surface_report *s, const options *o) {
 
 /* Of --part: which, of how many, and the planes that it owns. */
 static void piece_json(json_t *object, const extract_report *r) {
-    const int64_t *piece = r->o->piece;
+    const int64_t *piece = r->o->part;
     int64_t planes[2];
     if (!piece[1] || !r->input.grid) return;
     planes_cut_of(r->o, NULL, r->input.grid->dims[2], piece[0], piece[1], planes);
@@ -139,7 +139,7 @@ int extract_report_json(const extract_report *r) {
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "method", json_string(tc_method_name((tc_method)r->o->method)));
     json_object_set_new(object, "dims", r->input.grid ? integers_json(r->input.grid->dims) : json_null());
-    part_report_json(object, r->input.grid);
+    region_report_json(object, r->input.grid);
     piece_json(object, r);
     if (r->rank_count) json_object_set_new(object, "ranks", json_integer(r->rank_count));
     if (r->rank_count && r->input.grid) json_object_set_new(object, "cut", cut_json(r));
@@ -243,7 +243,7 @@ static void surface_text(const surface_report *s, int has_tetrahedra) {
 }
 
 static void piece_text(const extract_report *r) {
-    const int64_t *piece = r->o->piece;
+    const int64_t *piece = r->o->part;
     int64_t planes[2];
     if (!piece[1] || !r->input.grid) return;
     planes_cut_of(r->o, NULL, r->input.grid->dims[2], piece[0], piece[1], planes);

@@ -61,12 +61,12 @@ static const char *obstacle(const stream_input *in) {
     if (o->drop_degenerate) return "--drop-degenerate needs the whole mesh";
     if (o->simplify > 0) return "--simplify needs the whole mesh";
     if (o->separate_blocks && in->team) return "--blocks separate names files of blocks";
-    if (o->soup && (o->piece[1] || in->team)) return "--soup needs the whole mesh";
+    if (o->soup && (o->part[1] || in->team)) return "--soup needs the whole mesh";
     if (o->preview) return "--preview draws the whole mesh";
     return NULL;
 }
 
-static int is_asked_for(const stream_input *in) { return in->o->stream || in->o->piece[1] || in->team; }
+static int is_asked_for(const stream_input *in) { return in->o->stream || in->o->part[1] || in->team; }
 
 static uint64_t memory_of_stream(const stream_input *in) {
     const options *o = in->o;
@@ -163,8 +163,8 @@ static int take_counts(void *user, size_t surface, const tc_counts *counts) {
 }
 
 static int open_part(stream_job *j, streamed_surface *to, const tc_mesh_data *whole) {
-    part_header header = {.number = j->in->o->piece[0],
-                          .count = j->in->o->piece[1],
+    part_header header = {.number = j->in->o->part[0],
+                          .count = j->in->o->part[1],
                           .planes = {j->owned[0], j->owned[1]},
                           .vertex_count = whole->vertex_count,
                           .triangle_count = whole->triangle_count,
@@ -194,7 +194,7 @@ static int open_file(stream_job *j, streamed_surface *to, const double origin[3]
     memcpy(to->report->origin, origin, sizeof whole.origin);
     to->report->has_origin = 1;
     if (!j->in->o->output || to->file) return 0;
-    if (j->in->o->piece[1]) return open_part(j, to, &whole);
+    if (j->in->o->part[1]) return open_part(j, to, &whole);
     const output_shared *shared = j->in->team ? &j->shared[to - j->surfaces].shared : NULL;
     return surface_files_open_pieces(j->in->o, j->in->data, blocks_suit_world(j->in->blocks), s->iso, &whole, NULL,
                                      shared, j->in->carried, &j->files, &to->file);
@@ -249,7 +249,7 @@ static int begin(stream_job *j, surface_report *surfaces) {
     j->blanked_samples = from->blanked_points;
     j->blanked_cells = from->blanked_cells;
     j->owned[1] = j->grid.dims[2];
-    if (in->o->piece[1]) planes_cut_of(in->o, NULL, j->grid.dims[2], in->o->piece[0], in->o->piece[1], j->owned);
+    if (in->o->part[1]) planes_cut_of(in->o, NULL, j->grid.dims[2], in->o->part[0], in->o->part[1], j->owned);
     for (size_t n = 0; n < j->count; n++) {
         surface_report *s = &surfaces[n];
         engine_options(in->o, &in->o->isovalues[n], &j->how[n]);
@@ -368,14 +368,14 @@ int stream_may_be_needed(const stream_input *in, int *may) {
     *may = 0;
     if (is_asked_for(in) && why_not)
         return fail(STATUS_USAGE, "%s cannot be %s: %s", o->operands[0],
-                    in->team      ? "made by several ranks"
-                    : o->piece[1] ? "made in parts (--part)"
-                                  : "streamed",
+                    in->team     ? "made by several ranks"
+                    : o->part[1] ? "made in parts (--part)"
+                                 : "streamed",
                     why_not);
     const int64_t nz = in->data->blocks->dims[2];
-    int status = planes_cut_check(o, in->team, nz, in->team ? in->team->size : o->piece[1]);
+    int status = planes_cut_check(o, in->team, nz, in->team ? in->team->size : o->part[1]);
     if (status) return status;
-    if (!why_not && o->output && !o->piece[1]) status = mesh_file_check(o->output, &how);
+    if (!why_not && o->output && !o->part[1]) status = mesh_file_check(o->output, &how);
     if (is_asked_for(in) && status) return status;
     const uint64_t samples = (uint64_t)in->data->blocks->point_count;
     const int is_large = samples > host_memory_available() / (MESH_MOST + ENGINE_KEEPS);

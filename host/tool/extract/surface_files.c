@@ -73,9 +73,9 @@ int surface_files_check(const options *o, const dataset *d) {
     const mesh_write_options how = {
         .format = o->format, .soup = o->soup, .fields = &some, .field_count = o->carry != NULL};
     if (!o->output) return 0;
-    if (o->piece[1] && !output_is_file(o->output))
+    if (o->part[1] && !output_is_file(o->output))
         return fail(STATUS_USAGE, "-o %s: a part is written at many places of a file: name a file", o->output);
-    int status = o->piece[1] ? 0 : mesh_write_check(o->output, &how);
+    int status = o->part[1] ? 0 : mesh_write_check(o->output, &how);
     return status ? status : surface_names_check(o, d, "-o", o->output);
 }
 

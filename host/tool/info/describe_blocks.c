@@ -2,7 +2,7 @@
 
 #include "counted.h"
 #include "dataset/cell_types.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 #include "input/statistics.h"
 #include "input/used_points.h"
 #include "shortest.h"
@@ -193,7 +193,7 @@ static void block_text(const dataset *d, const dataset_block *b) {
         if (b->first[0] || b->first[1] || b->first[2])
             printf("first point   %" PRId64 " %" PRId64 " %" PRId64 "\n", b->first[0], b->first[1], b->first[2]);
     }
-    part_report_text("part          ", b);
+    region_report_text("part          ", b);
     if (b->kind == BLOCK_UNIFORM) describe_world_text(d, b);
     if (points || cells)
         printf("blanked       %s, %s\n", counted(points, "point", "points").text, counted(cells, "cell", "cells").text);

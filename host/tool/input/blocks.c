@@ -2,7 +2,7 @@
 
 #include "counted.h"
 #include "dataset/cell_types.h"
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "input.h"
@@ -48,7 +48,7 @@ static const tc_grid_options *describe_whole(const dataset_block *b, tc_grid_opt
     enum { SAMPLES_MOST = 1 << 24 };
     if (!b->whole) return NULL;
     describe_world(b->whole, whole);
-    if (b->kind == BLOCK_UNIFORM) part_whole_extent(b, whole->first_index, whole->dims);
+    if (b->kind == BLOCK_UNIFORM) region_whole_extent(b, whole->first_index, whole->dims);
     for (int axis = 0; axis < 3; axis++)
         if (whole->dims[axis] < 2 || whole->dims[axis] > SAMPLES_MOST) return NULL;
     return whole;
@@ -185,7 +185,7 @@ static void tell_all(const block_list *list) {
     int all_cut = 1, is_thinned = 0;
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
-        for (int axis = 0; axis < 3; axis++) is_thinned |= b->source->part.step[axis] > 1;
+        for (int axis = 0; axis < 3; axis++) is_thinned |= b->source->region.step[axis] > 1;
         flat_blocks += (uint64_t)b->is_skipped;
         flat += b->complex.flat_cell_count;
         curved += b->complex.curved_cell_count;

@@ -1,6 +1,6 @@
 #include "input.h"
 
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "library_status.h"
@@ -53,9 +53,9 @@ int input_request(const options *o, read_request *request) {
     request->field = o->field;
     request->has_nodata = o->has_nodata;
     request->nodata = o->nodata;
-    request->part = o->part;
-    request->part.has_indices = options_given(o, "--roi");
-    request->part.has_world = options_given(o, "--roi-world");
+    request->region = o->region;
+    request->region.has_indices = options_given(o, "--roi");
+    request->region.has_world = options_given(o, "--roi-world");
     request->mask = o->mask;
     return 0;
 }
@@ -93,7 +93,7 @@ int input_take_parts(dataset *d) {
     int status = 0;
     for (int n = 0; n < d->block_count; n++)
         for (int m = 0; m < d->blocks[n].field_count && !status; m++)
-            status = part_field(d, &d->blocks[n], &d->blocks[n].fields[m], &d->blocks[n].fields[m]);
+            status = region_field(d, &d->blocks[n], &d->blocks[n].fields[m], &d->blocks[n].fields[m]);
     return status;
 }
 

@@ -1,7 +1,7 @@
 #include "input/input_summary.h"
 
 #include "counted.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -29,5 +29,5 @@ void input_summary_text(const input_summary *s) {
     printf("%s%s%s, %s, %s\n", s->field, s->field[0] ? " " : "", tc_type_name(s->type),
            counted(s->cell_count, "cell", "cells").text,
            counted(s->tetrahedron_count, "tetrahedron", "tetrahedra").text);
-    part_report_text("part: ", s->grid);
+    region_report_text("part: ", s->grid);
 }

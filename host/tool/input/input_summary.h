@@ -18,7 +18,7 @@ typedef struct input_summary {
 /* Valid as long as the dataset and the field are. */
 input_summary input_summarize(const options *o, const dataset *d, const scalar *field, const block_list *blocks);
 
-/* The summary and which part of the grid was taken (part_report.h), a line each. */
+/* The summary and which part of the grid was taken (region_report.h), a line each. */
 void input_summary_text(const input_summary *s);
 
 #endif

@@ -1,6 +1,6 @@
 #include "mask.h"
 
-#include "dataset/part.h"
+#include "dataset/region.h"
 #include "exit_status.h"
 #include "failure.h"
 #include "read.h"
@@ -71,7 +71,7 @@ static int apply_to_block(const char *path, dataset *mask, dataset *d, int n, sc
     if (!from)
         return fail(STATUS_USAGE, "--mask %s: has no structured grid for block %d of the input", path, b->number);
     int status = check_values(path, mask, from);
-    if (!status) status = part_field(mask, from, from->fields, &values);
+    if (!status) status = region_field(mask, from, from->fields, &values);
     uint8_t *blanked = status ? NULL : dataset_allocate(d, count);
     if (!blanked) return status ? status : STATUS_FAILED;
     *left_out += leave_out(&values, s->blanked_points, count, blanked);

@@ -2,8 +2,8 @@
  * mask.h - a volume that says which samples of the input are missing: those where it is 0, or has no value
  *
  * It has the blocks and sizes of the input, one value per sample, and any format that is read. A file of no known
- * format is taken as raw samples of one byte. Where it lies in space does not matter. Of a part of the input (part.h)
- * the same part of the mask is read.
+ * format is taken as raw samples of one byte. Where it lies in space does not matter. Of a region of the input
+ * (region.h) the same part of the mask is read.
  */
 #ifndef MASK_H
 #define MASK_H

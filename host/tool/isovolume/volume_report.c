@@ -2,7 +2,7 @@
 #include "volume_report.h"
 
 #include "counted.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 #include "output.h"
 #include "shortest.h"
 #include "terminal/json_report.h"
@@ -79,7 +79,7 @@ int isovolume_report_json(const isovolume_report *r) {
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->engine == TC_ENGINE_REFERENCE ? "reference" : "opencl"));
     json_object_set_new(object, "dims", r->input.grid ? integers_json(r->input.grid->dims) : json_null());
-    part_report_json(object, r->input.grid);
+    region_report_json(object, r->input.grid);
     json_object_set_new(object, "cells", count_json(r->input.cell_count));
     json_object_set_new(object, "tetrahedra", count_json(r->input.tetrahedron_count));
     json_object_set_new(object, "timings_ms", run_times_json(&r->times));

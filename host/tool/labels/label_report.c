@@ -1,7 +1,7 @@
 #include "label_report.h"
 
 #include "counted.h"
-#include "input/part_report.h"
+#include "input/region_report.h"
 #include "output.h"
 #include "progress.h"
 #include "shortest.h"
@@ -49,7 +49,7 @@ static int print_json(const label_report *r) {
     json_object_set_new(object, "device", r->device[0] ? string_json(r->device) : json_null());
     json_object_set_new(object, "engine", json_string(r->device[0] ? "opencl" : "reference"));
     json_object_set_new(object, "dims", integers_json(r->grid->dims));
-    part_report_json(object, r->grid);
+    region_report_json(object, r->grid);
     json_object_set_new(object, "smoothing", count_json(r->smoothing));
     json_object_set_new(object, "closed", json_boolean(r->o->closed));
     json_object_set_new(object, "vertices", count_json(r->vertex_count));
@@ -85,7 +85,7 @@ static void print_text(const label_report *r) {
     const int64_t *dims = r->grid->dims;
     printf("%s: %" PRId64 " x %" PRId64 " x %" PRId64 " %s%s%s\n", r->o->operands[0], dims[0], dims[1], dims[2],
            r->field, r->field[0] ? " " : "", tc_type_name(r->type));
-    part_report_text("part: ", r->grid);
+    region_report_text("part: ", r->grid);
     printf("%s\n", r->device[0] ? r->device : "reference engine");
     printf("%s of %s\n", r->row_count == 1 ? "surface" : "surfaces", counted(r->row_count, "label", "labels").text);
     printf("  mesh        %s, %s (%" PRIu64 " of zero area), through %s\n",

@@ -1,4 +1,4 @@
-#include "dataset/part.h"
+#include "dataset/region.h"
 
 #include "dataset/world.h"
 #include "exit_status.h"
@@ -12,7 +12,7 @@
 #include <string.h>
 
 static int64_t step_of(const read_request *request, int axis) {
-    return request->part.step[axis] > 1 ? request->part.step[axis] : 1;
+    return request->region.step[axis] > 1 ? request->region.step[axis] : 1;
 }
 
 static int64_t floor_div(int64_t a, int64_t b) { return a / b - (a % b < 0); }
@@ -30,10 +30,10 @@ static index_ranges indices_of(const dataset_block *b) {
     return e;
 }
 
-int part_is_asked(const read_request *request) {
+int region_is_asked(const read_request *request) {
     int is_thinned = 0;
     for (int axis = 0; axis < 3; axis++) is_thinned |= step_of(request, axis) > 1;
-    return request->part.has_indices || request->part.has_world || is_thinned || request->like;
+    return request->region.has_indices || request->region.has_world || is_thinned || request->like;
 }
 
 /* ---------------------------------------------------------------------------------------------------------- values */
@@ -64,8 +64,8 @@ static int take_box(dataset *d, const dataset_field *as, const int64_t dims[3], 
     return layout_gather("", &l, from, to);
 }
 
-int part_points(dataset *d, const int64_t dims[3], tc_type type, int components, const sample_box *box,
-                const void **values) {
+int region_points(dataset *d, const int64_t dims[3], tc_type type, int components, const sample_box *box,
+                  const void **values) {
     const dataset_field as = {.type = type, .components = components};
     return *values ? take_box(d, &as, dims, box, values) : 0;
 }
@@ -95,11 +95,11 @@ static uint8_t has_blanked(const int64_t dims[3], const sample_box *box, const u
     return any;
 }
 
-int part_blanked_cells(dataset *d, const int64_t dims[3], const sample_box *box, const uint8_t **cells) {
+int region_blanked_cells(dataset *d, const int64_t dims[3], const sample_box *box, const uint8_t **cells) {
     const sample_box own = cells_of(box);
     int64_t all[3], at[3];
     cell_dims(dims, all);
-    if (!*cells || !is_thinned(box)) return part_points(d, all, TC_U8, 1, &own, (const void **)cells);
+    if (!*cells || !is_thinned(box)) return region_points(d, all, TC_U8, 1, &own, (const void **)cells);
     uint8_t *merged = dataset_allocate(d, (uint64_t)(own.count[0] * own.count[1] * own.count[2])), *to = merged;
     if (!merged) return STATUS_FAILED;
     for (at[2] = 0; at[2] < own.count[2]; at[2]++)
@@ -122,20 +122,20 @@ static int take_field(dataset *d, const dataset_field *f, const int64_t dims[3],
     return take_box(d, &from, f->on_cells ? cells : dims, f->on_cells ? &of_cells : points, &out->values);
 }
 
-int part_field(dataset *d, const dataset_block *b, const dataset_field *f, dataset_field *out) {
+int region_field(dataset *d, const dataset_block *b, const dataset_field *f, dataset_field *out) {
     *out = *f;
-    return f->is_whole ? take_field(d, f, b->whole->dims, &b->part, out) : 0;
+    return f->is_whole ? take_field(d, f, b->whole->dims, &b->region, out) : 0;
 }
 
-int part_around(dataset *d, const dataset_block *b, const dataset_field *f, dataset_block *around, dataset_field *out,
-                sample_box *inner) {
+int region_around(dataset *d, const dataset_block *b, const dataset_field *f, dataset_block *around, dataset_field *out,
+                  sample_box *inner) {
     const dataset_block *whole = b->whole;
     sample_box wide;
-    *inner = b->part;
+    *inner = b->region;
     *around = (dataset_block){.kind = whole->kind, .point_count = 1, .cell_count = 1};
     for (int axis = 0; axis < 3; axis++) {
-        const int64_t last = b->part.first[axis] + (b->part.count[axis] - 1) * b->part.step[axis];
-        wide.first[axis] = most(b->part.first[axis] - 1, 0);
+        const int64_t last = b->region.first[axis] + (b->region.count[axis] - 1) * b->region.step[axis];
+        wide.first[axis] = most(b->region.first[axis] - 1, 0);
         wide.count[axis] = least(last + 2, whole->dims[axis]) - wide.first[axis];
         wide.step[axis] = 1;
         inner->first[axis] -= wide.first[axis];
@@ -145,22 +145,22 @@ int part_around(dataset *d, const dataset_block *b, const dataset_field *f, data
     }
     around->blanked_points = whole->blanked_points;
     around->blanked_cells = whole->blanked_cells;
-    int status = part_points(d, whole->dims, TC_U8, 1, &wide, (const void **)&around->blanked_points);
-    if (!status) status = part_blanked_cells(d, whole->dims, &wide, &around->blanked_cells);
+    int status = region_points(d, whole->dims, TC_U8, 1, &wide, (const void **)&around->blanked_points);
+    if (!status) status = region_blanked_cells(d, whole->dims, &wide, &around->blanked_cells);
     return status ? status : take_field(d, f, whole->dims, &wide, out);
 }
 
 /* ------------------------------------------------------------------------------------------------------ index space */
 
-void part_range(const dataset_block *b, int axis, int64_t *begin, int64_t *end) {
-    *begin = b->whole ? b->whole->first[axis] + b->part.first[axis] : b->first[axis];
-    *end = *begin + (b->whole ? (b->part.count[axis] - 1) * b->part.step[axis] : b->dims[axis] - 1) + 1;
+void region_range(const dataset_block *b, int axis, int64_t *begin, int64_t *end) {
+    *begin = b->whole ? b->whole->first[axis] + b->region.first[axis] : b->first[axis];
+    *end = *begin + (b->whole ? (b->region.count[axis] - 1) * b->region.step[axis] : b->dims[axis] - 1) + 1;
 }
 
-void part_whole_extent(const dataset_block *b, int64_t first[3], int64_t dims[3]) {
+void region_whole_extent(const dataset_block *b, int64_t first[3], int64_t dims[3]) {
     for (int axis = 0; axis < 3; axis++) {
-        const int64_t step = b->part.step[axis], before = b->part.first[axis] / step;
-        const int64_t behind = (b->whole->dims[axis] - 1 - b->part.first[axis]) / step;
+        const int64_t step = b->region.step[axis], before = b->region.first[axis] / step;
+        const int64_t behind = (b->whole->dims[axis] - 1 - b->region.first[axis]) / step;
         first[axis] = b->first[axis] - before;
         dims[axis] = before + behind + 1;
     }
@@ -168,7 +168,7 @@ void part_whole_extent(const dataset_block *b, int64_t first[3], int64_t dims[3]
 
 /* Sample i of the whole gets the index floor(i / step); the matrix puts the part's first sample where it was. */
 static void thin_indices(dataset_block *b, int axis) {
-    const int64_t step = b->part.step[axis], at = b->first[axis] + b->part.first[axis];
+    const int64_t step = b->region.step[axis], at = b->first[axis] + b->region.first[axis];
     b->first[axis] = floor_div(at, step);
     for (int r = 0; r < 3 && step > 1; r++) {
         b->matrix[r][3] += b->matrix[r][axis] * (double)(at - b->first[axis] * step);
@@ -178,17 +178,17 @@ static void thin_indices(dataset_block *b, int axis) {
 
 static int take_coordinates(dataset *d, dataset_block *b) {
     static const int64_t single[3] = {1, 1, 1};
-    const sample_box *box = &b->part;
+    const sample_box *box = &b->region;
     int status = 0;
     if (b->kind == BLOCK_CURVILINEAR)
-        status = b->points.f64 ? part_points(d, b->whole->dims, TC_F64, 3, box, (const void **)&b->points.f64)
-                               : part_points(d, b->whole->dims, TC_F32, 3, box, (const void **)&b->points.f32);
+        status = b->points.f64 ? region_points(d, b->whole->dims, TC_F64, 3, box, (const void **)&b->points.f64)
+                               : region_points(d, b->whole->dims, TC_F32, 3, box, (const void **)&b->points.f32);
     for (int axis = 0; axis < 3 && b->kind == BLOCK_RECTILINEAR && !status; axis++) {
         const sample_box of_axis = {
             .first = {box->first[axis]}, .count = {box->count[axis], 1, 1}, .step = {box->step[axis], 1, 1}};
         coordinates *at = &b->axes[axis];
-        status = at->f64 ? part_points(d, single, TC_F64, 1, &of_axis, (const void **)&at->f64)
-                         : part_points(d, single, TC_F32, 1, &of_axis, (const void **)&at->f32);
+        status = at->f64 ? region_points(d, single, TC_F64, 1, &of_axis, (const void **)&at->f64)
+                         : region_points(d, single, TC_F32, 1, &of_axis, (const void **)&at->f32);
     }
     return status;
 }
@@ -201,7 +201,7 @@ static int become_part(dataset *d, dataset_block *b, const sample_box *box) {
     whole->fields = NULL;
     whole->field_count = 0;
     b->whole = whole;
-    b->part = *box;
+    b->region = *box;
     b->point_count = b->cell_count = 1;
     for (int axis = 0; axis < 3; axis++) {
         b->dims[axis] = box->count[axis];
@@ -210,8 +210,8 @@ static int become_part(dataset *d, dataset_block *b, const sample_box *box) {
         thin_indices(b, axis);
     }
     int status = take_coordinates(d, b);
-    if (!status) status = part_points(d, whole->dims, TC_U8, 1, box, (const void **)&b->blanked_points);
-    return status ? status : part_blanked_cells(d, whole->dims, box, &b->blanked_cells);
+    if (!status) status = region_points(d, whole->dims, TC_U8, 1, box, (const void **)&b->blanked_points);
+    return status ? status : region_blanked_cells(d, whole->dims, box, &b->blanked_cells);
 }
 
 /* ----------------------------------------------------------------------------------------------------- world space */
@@ -320,8 +320,8 @@ static const char *size_text(const dataset *d, const index_ranges *all, char tex
 static int find_ranges(const read_request *request, const dataset *d, const index_ranges *all, index_ranges *asked) {
     char size[SIZE_TEXT];
     *asked = *all;
-    for (int axis = 0; axis < 3 && request->part.has_indices; axis++) {
-        const int64_t begin = request->part.indices.begin[axis], end = request->part.indices.end[axis];
+    for (int axis = 0; axis < 3 && request->region.has_indices; axis++) {
+        const int64_t begin = request->region.indices.begin[axis], end = request->region.indices.end[axis];
         if (begin != INT64_MIN) asked->begin[axis] = begin;
         if (end != INT64_MAX) asked->end[axis] = end;
         const int is_empty = asked->begin[axis] >= asked->end[axis];
@@ -340,11 +340,11 @@ static int find_ranges(const read_request *request, const dataset *d, const inde
 }
 
 static const char *options_of(const read_request *request, int axis) {
-    const int is_cut = request->part.has_indices || request->part.has_world;
-    const char *roi = request->part.has_world ? "--roi-world" : "--roi";
+    const int is_cut = request->region.has_indices || request->region.has_world;
+    const char *roi = request->region.has_world ? "--roi-world" : "--roi";
     if (step_of(request, axis) == 1) return roi;
     if (!is_cut) return "--step";
-    return request->part.has_world ? "--roi-world and --step" : "--roi and --step";
+    return request->region.has_world ? "--roi-world and --step" : "--roi and --step";
 }
 
 /* The block's samples that are asked for. *is_there: whether it has two or more along each axis; a lone block has to.
@@ -355,7 +355,7 @@ static int find_box(const read_request *request, const dataset *d, dataset_block
     index_ranges asked;
     int status = find_ranges(request, d, all, &asked);
     if (status) return status;
-    *is_there = !request->part.has_world || find_in_world(b, &request->part.world, &asked);
+    *is_there = !request->region.has_world || find_in_world(b, &request->region.world, &asked);
     if (!*is_there && d->block_count == 1)
         return fail(STATUS_USAGE, "%s: --roi-world: %s there: %s; 'tetracubes info' tells where they lie",
                     request->path, b->kind == BLOCK_CURVILINEAR ? "no sample lies" : "the grid does not lie",
@@ -391,7 +391,7 @@ static int find_likewise(const read_request *request, const dataset_block *b, sa
                         request->path, b->dims[0], b->dims[1], b->dims[2], whole->dims[0], whole->dims[1],
                         whole->dims[2]);
         *is_there = 1;
-        *box = other->part;
+        *box = other->region;
         if (other->whole) return 0;
         *box = (sample_box){.step = {1, 1, 1}};
         memcpy(box->count, b->dims, sizeof b->dims);
@@ -406,12 +406,12 @@ static int find_part(const read_request *request, const dataset *d, dataset_bloc
 
 /* ----------------------------------------------------------------------------------------------------------- calls */
 
-int part_cut_image(const read_request *request, dataset *d, layout *l) {
+int region_cut_image(const read_request *request, dataset *d, layout *l) {
     dataset_block *b = d->blocks;
     const index_ranges all = indices_of(b);
     sample_box box;
     int is_there, status;
-    if (!part_is_asked(request)) return 0;
+    if (!region_is_asked(request)) return 0;
     if ((status = find_part(request, d, b, &all, &box, &is_there)) || !is_there) return status;
     layout_cut(l, &box);
     return become_part(d, b, &box);
@@ -428,12 +428,12 @@ static index_ranges indices_of_all(const dataset *d) {
     return all;
 }
 
-int part_cut_blocks(const read_request *request, dataset *d) {
+int region_cut_blocks(const read_request *request, dataset *d) {
     const index_ranges all = indices_of_all(d);
     char size[SIZE_TEXT];
     int kept = 0;
     for (int n = 0; n < d->block_count; n++) d->blocks[n].number = n;
-    if (!part_is_asked(request) || all.begin[0] >= all.end[0]) return 0;
+    if (!region_is_asked(request) || all.begin[0] >= all.end[0]) return 0;
     for (int n = 0; n < d->block_count; n++) {
         dataset_block *b = &d->blocks[n];
         sample_box box;
