@@ -123,6 +123,9 @@ def inputs_write(folder):
         "a.npy": b"\x93NUMPY\1\0" + struct.pack("<H", 118) + (
             f"{{'descr': '>f4', 'fortran_order': True, 'shape': ({SIZE}, {SIZE}, {SIZE}), }}".ljust(117) + "\n").encode()
                  + struct.pack(f">{count}f", *values()),
+        "labels.npy": b"\x93NUMPY\1\0" + struct.pack("<H", 118) + (
+            f"{{'descr': '|u1', 'fortran_order': False, 'shape': ({SIZE}, {SIZE}, {SIZE}), }}".ljust(117) + "\n").encode()
+                      + bytes(0 if v < 80 else 1 if v < 90 else 2 for v in values()),
         "a.tif": tiff(values()),
         "a.vti": f'<VTKFile type="ImageData" version="0.1" byte_order="LittleEndian" '
                  f'compressor="vtkZLibDataCompressor"><ImageData WholeExtent="{extent}"><Piece Extent="{extent}">'
@@ -173,13 +176,13 @@ class Failures(unittest.TestCase):
         step = 1 if ALL or count <= most else count // most
         return range(1, count + 1, step)
 
-    def fail_requests(self, *command):
+    def fail_requests(self, *command, most=REQUESTS_MOST):
         clean = {"LD_PRELOAD": MEMORY_LIBRARY, "TETRACUBES_MEMORY_FAULT": "0"}
         status, messages, files = self.run_once(command, clean)
         self.assertEqual(status, 0, f"{command}: {messages}")
         requests, left = map(int, re.search(r"memory_fault: (\d+) requests, 0 failed, (\d+) pieces", messages).groups())
         self.assertEqual(left, 0, f"{command}: memory is left at the end")
-        for n in self.sample(requests, REQUESTS_MOST):
+        for n in self.sample(requests, most):
             outcome = self.run_once(command, dict(clean, TETRACUBES_MEMORY_FAULT=str(n)))
             COUNTS["requests for memory failed, in the tool"] += 1
             self.judge(command, f"request {n}", outcome, files, "memory")
@@ -222,6 +225,19 @@ class Memory(Failures):
             with self.subTest(ending):
                 self.fail_requests("extract", "@grid.vtk", "--iso", "80,90", "--engine", "reference", "--normals",
                                    "--check", "-o", f"s%.{ending}")
+
+    def test_streams_and_parts(self):
+        """All requests of the first one, as few are the stream's own."""
+        extract = ["extract", "@a.nrrd", "--iso", "80", "--engine", "reference"]
+        self.fail_requests(*extract, "--stream", "-o", "s.stl", most=1000)
+        self.fail_requests("extract", "@grid.vts", "--iso", "80", "--engine", "reference", "--stream", "--carry", "bump",
+                           "-o", "s.vtp")
+        self.fail_requests(*extract, "--part", "0/2", "-o", "s.part")
+
+    def test_labels_and_intervals(self):
+        self.fail_requests("labels", "@labels.npy", "--engine", "reference", "--check", "--separate", "-o", "s%.ply")
+        self.fail_requests("labels", "@labels.npy", "--engine", "reference", "-o", "s.glb")
+        self.fail_requests("isovolume", "@a.nrrd", "--range", "80,90", "--engine", "reference", "--check", "-o", "s.vtu")
 
     def test_pictures(self):
         if "pictures: PNG" not in subprocess.check_output([TOOL, "--version"], text=True):

@@ -47,25 +47,35 @@ static json_t *input_json(const options *o, const tc_grid_options *g, const void
     const uint64_t points = (uint64_t)(g->dims[0] * g->dims[1] * g->dims[2]);
     json_t *bytes = json_array();
     struct stat file;
+    int failed = 0;
     for (int n = 0; n < o->operand_count; n++)
         if (stat(o->operands[n], &file) == 0 && S_ISREG(file.st_mode))
-            json_array_append_new(bytes, json_integer((json_int_t)file.st_size));
+            failed |= json_array_append_new(bytes, json_integer((json_int_t)file.st_size));
     const uint64_t content = hash_pieces(blanked, points, hash_pieces(samples, points * tc_type_bytes(g->type), 0));
-    return json_pack("{s:o, s:o, s:o}", "file_bytes", bytes, "grid", hash_json(hash_grid(g)), "samples",
-                     hash_json(content));
+    json_t *input = json_object();
+    failed |= json_object_set_new(input, "file_bytes", bytes);
+    failed |= json_object_set_new(input, "grid", hash_json(hash_grid(g)));
+    failed |= json_object_set_new(input, "samples", hash_json(content));
+    if (!failed) return input;
+    json_decref(input);
+    return NULL;
 }
 
 static json_t *channels_json(const tc_extract_options *how) {
     json_t *names = json_array();
+    int failed = 0;
     for (int n = 0; n < CHANNEL_COUNT; n++)
-        if (channel_is_asked(how, n)) json_array_append_new(names, json_string(mesh_channels[n].name));
-    return names;
+        if (channel_is_asked(how, n)) failed |= json_array_append_new(names, json_string(mesh_channels[n].name));
+    if (!failed) return names;
+    json_decref(names);
+    return NULL;
 }
 
 /* Names and components; NULL, with its message, where a name is no text that JSON holds. */
 static json_t *carried_json(const carried_fields *c) {
     json_t *list = json_array();
-    for (int n = 0; n < c->count; n++) {
+    int failed = !list;
+    for (int n = 0; n < c->count && !failed; n++) {
         json_t *name = json_string(c->fields[n].name);
         if (!name) {
             json_decref(list);
@@ -73,9 +83,12 @@ static json_t *carried_json(const carried_fields *c) {
                  c->fields[n].name);
             return NULL;
         }
-        json_array_append_new(list, json_pack("[o, i]", name, c->fields[n].components));
+        failed = json_array_append_new(list, json_pack("[o, i]", name, c->fields[n].components));
     }
-    return list;
+    if (!failed) return list;
+    json_decref(list);
+    fail(STATUS_FAILED, "out of memory for the header of a part");
+    return NULL;
 }
 
 json_t *part_surface_make(const options *o, const dataset *d, const scalar *field, const carried_fields *carried,
@@ -83,15 +96,25 @@ json_t *part_surface_make(const options *o, const dataset *d, const scalar *fiel
                           const uint8_t *blanked_samples, int suits_world) {
     json_t *fields_carried = carried_json(carried);
     if (!fields_carried) return NULL;
-    json_t *surface = json_pack(
-        "{s:s, s:s, s:s, s:b, s:o, s:s, s:o, s:i, s:f, s:s, s:o, s:b, s:o, s:o, s:o}", "version", tc_version(), "world",
-        d->world, "units", d->units, "suits_world", suits_world, "dims", integers_json(grid->dims), "type",
-        tc_type_name(grid->type), "field", string_json(field->name), "component", field->component, "isovalue",
-        how->isovalue, "method", tc_method_name(how->method), "snap",
-        how->method == TC_METHOD_SNAP ? json_real(how->snap) : json_null(), "closed", how->closed, "nodata",
-        o->has_nodata ? json_real(o->nodata) : json_null(), "channels", channels_json(how), "carried", fields_carried);
-    json_t *input = input_json(o, grid, samples, blanked_samples);
-    if (surface && !json_object_set_new(surface, "input", input)) return surface;
+    json_t *surface = json_object(); /* set_new takes what it is given, also where it fails */
+    int failed = json_object_set_new(surface, "version", json_string(tc_version()));
+    failed |= json_object_set_new(surface, "world", json_string(d->world));
+    failed |= json_object_set_new(surface, "units", json_string(d->units));
+    failed |= json_object_set_new(surface, "suits_world", json_boolean(suits_world));
+    failed |= json_object_set_new(surface, "dims", integers_json(grid->dims));
+    failed |= json_object_set_new(surface, "type", json_string(tc_type_name(grid->type)));
+    failed |= json_object_set_new(surface, "field", string_json(field->name));
+    failed |= json_object_set_new(surface, "component", json_integer(field->component));
+    failed |= json_object_set_new(surface, "isovalue", json_real(how->isovalue));
+    failed |= json_object_set_new(surface, "method", json_string(tc_method_name(how->method)));
+    failed |= json_object_set_new(surface, "snap",
+                                  how->method == TC_METHOD_SNAP ? json_real((double)how->snap) : json_null());
+    failed |= json_object_set_new(surface, "closed", json_boolean(how->closed));
+    failed |= json_object_set_new(surface, "nodata", o->has_nodata ? json_real(o->nodata) : json_null());
+    failed |= json_object_set_new(surface, "channels", channels_json(how));
+    failed |= json_object_set_new(surface, "carried", fields_carried);
+    failed |= json_object_set_new(surface, "input", input_json(o, grid, samples, blanked_samples));
+    if (!failed) return surface;
     json_decref(surface);
     fail(STATUS_FAILED, "out of memory for the header of a part");
     return NULL;
