@@ -309,6 +309,7 @@ static int make_streamed(job *j) {
     for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
     for (size_t n = 0; n < count && !status && !j->o->part[1]; n++)
         status = surface_tell_empty(&j->data, &j->field, &s[n]); /* a part may well be empty */
+    for (size_t n = 0; n < count && !status && j->o->closed; n++) surface_tell_closed(&j->blocks, &s[n]);
     return status;
 }
 

@@ -39,8 +39,8 @@ inline_always void scan_post_prefix(global uint *tiles, uint tile, uint sum_inde
     atomic_xchg(scan_at(tiles, tile, sum_index), scan_word(SCAN_PREFIX, prefix));
 }
 
-/* Walks back from *tile on, adding to *sum. Returns true when the prefix is complete, false when *tile has posted
- * nothing within the limit of polls. */
+/* Walks back from *tile on, adding to *sum. Returns true when all tiles before are in the sum, false when tile
+ * *tile - 1 has posted nothing within the limit of polls. */
 inline_always bool scan_look_back(global uint *tiles, uint sum_index, uint *tile, uint *sum, uint spin_limit) {
     uint polls = 0;
     while (*tile > 0 && polls <= spin_limit) {

@@ -47,17 +47,18 @@ typedef struct brick_range {
  * vertices for each. A pattern of two signs has a bit per corner; where the surface can go through samples, a digit to
  * the base 3. Then 256 shorts follow
  * the table, which turn bits into digits: entry n is the sum of 3^m over the bits m of n. */
-#define CASE_COUNT(vertex_types) ((vertex_types) > 6 ? 6561 : 256)
+#define CASE_COUNT(method_types) ((method_types) > 6 ? 6561 : 256)
 enum { CUBE_CASE_BYTES = 32 };
 
 /* Of closed surfaces entries for faces on the border follow, from this one on: 2 parities x CAP_FACES x CAP_FACE_CASES
  * cases of a face, a digit to the base 3 for each of its corners. */
-#define CAP_FIRST(vertex_types) (2 * CASE_COUNT(vertex_types) + 2 * 256 / CUBE_CASE_BYTES)
+#define CAP_FIRST(method_types) (2 * CASE_COUNT(method_types) + 2 * 256 / CUBE_CASE_BYTES)
 enum { CAP_FACES = 6, CAP_FACE_CASES = 81, CAP_ENTRIES = 2 * CAP_FACES * CAP_FACE_CASES };
 
 /* Kernel 2 where a work-item has a brick to itself: its table of vertex numbers has NUMBER_ROWS x NUMBER_PLANES rows of
- * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of vertex and, where these are not a
- * power of two, unused ones up to the next. The table of cases names a vertex by its slot (case_slots.h). */
+ * NUMBER_COLUMNS samples. A sample has NUMBER_TYPES entries: one for each type of vertex, and more up to a power of
+ * two; of eight the last may be the vertex at the next sample in x (case_slots.h). The table of cases names a vertex by
+ * its slot (case_slots.h). */
 #define NUMBER_TYPES(vertex_types) ((vertex_types) > 4 ? 8 : 4)
 enum {
     NUMBER_COLUMNS = 65,
@@ -92,7 +93,7 @@ enum {
     STATE_TICKET,      /* next tile of kernel 1 */
     STATE_EMIT_TICKET, /* next run of active bricks of kernel 2 */
     STATE_ACTIVE_BRICKS,
-    STATE_ACTIVE_CELLS, /* cubes that the surface passes through: cells, in kernels, are cubes */
+    STATE_ACTIVE_CELLS, /* cubes that the surface passes through: cells, in kernels of structured grids, are cubes */
     STATE_NONFINITE,    /* not 0: a sample is NaN or infinite, so the grid must be classified with missing cells */
     STATE_VERTICES,     /* totals of the slab */
     STATE_TRIANGLES,
@@ -104,8 +105,8 @@ enum {
 
 /* Words of the state buffer per tile: two sums as scan.cl keeps them, one more word, and the next tile of the same
  * group. Kernel 1 sums up vertices and triangles, and keeps how many bricks emit something. Others sum up something
- * else: active items and triangles (complex_count.cl), vertices at points and tetrahedra (complex_interval_count.cl).
- */
+ * else, as active items and triangles (complex_count.cl), or vertices at points and tetrahedra
+ * (complex_interval_count.cl). */
 enum {
     TILE_SUM_X,
     TILE_SUM_Y,

@@ -13,7 +13,7 @@
 typedef struct tile_scan {
     uint spin_limit;
     global uint *tiles;
-    local uint *shared; /* 4 words */
+    local uint *shared; /* 2 words */
     local uint2 *sums;  /* one per work-item and one more */
 } tile_scan;
 
@@ -77,16 +77,16 @@ inline_always bool tile_settle(tile_scan scan, uint tile_index, bool look, uint 
     bool done = false;
     group_barrier();
     if (get_local_id(0) == 0) {
-        uint vertices = 0, triangles = 0;
+        uint sum_x = 0, sum_y = 0;
         scan.shared[1] = tile_index;
         done = (look || scan.spin_limit > 1 || tile_index == 0) &&
-               tile_look_back(scan, tile_index, TILE_SUM_X, &vertices) &&
-               tile_look_back(scan, tile_index, TILE_SUM_Y, &triangles);
+               tile_look_back(scan, tile_index, TILE_SUM_X, &sum_x) &&
+               tile_look_back(scan, tile_index, TILE_SUM_Y, &sum_y);
         if (done) {
-            vertices += scan_own_sum(scan.tiles, tile_index, TILE_SUM_X);
-            triangles += scan_own_sum(scan.tiles, tile_index, TILE_SUM_Y);
-            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_X, vertices);
-            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_Y, triangles);
+            sum_x += scan_own_sum(scan.tiles, tile_index, TILE_SUM_X);
+            sum_y += scan_own_sum(scan.tiles, tile_index, TILE_SUM_Y);
+            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_X, sum_x);
+            scan_post_prefix(scan.tiles, tile_index, TILE_SUM_Y, sum_y);
         }
         scan.shared[0] = done;
     }

@@ -37,6 +37,9 @@ typedef struct grid_index {
     uint x, y, z;
 } grid_index;
 
+/* Which word of its rows a brick has. */
+inline_always uint brick_word(const slab *s, uint brick) { return brick % s->words_x; }
+
 /* The first sample of a brick. */
 inline_always grid_index brick_origin(const slab *s, uint brick) {
     grid_index origin = {brick % s->words_x * 64, brick / s->words_x % s->bricks_y * BRICK_ROWS,

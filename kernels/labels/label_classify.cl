@@ -13,7 +13,7 @@
 /* What kernel 1 leaves, for each row of each brick. rows: of each brick, bit n: row n has words and the rest. */
 typedef struct label_arrays {
     global ulong *words;          /* LABEL_WORDS */
-    global ushort *offsets;       /* LABEL_OFFSETS: vertices of a type before those of the row's others */
+    global ushort *offsets;       /* LABEL_OFFSETS: for each shared type, the row's vertices of the types before it */
     global label_row_base *bases; /* within the tile */
     global uint *rows;
 } label_arrays;

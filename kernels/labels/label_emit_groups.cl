@@ -1,8 +1,8 @@
 /*
  * label_emit_groups.cl - kernel 2 of label maps where work-items share bricks
  *
- * Each team, of 32 work-items, takes a row of the brick at a time. One of the team makes the words and numbers that the
- * row's cubes need, then each work-item has cubes of its own.
+ * 32 work-items share a row of the brick. One of them makes the words and numbers that the row's cubes need, then each
+ * has cubes of its own.
  */
 #ifndef LABEL_EMIT_GROUPS_CL
 #define LABEL_EMIT_GROUPS_CL
@@ -64,14 +64,14 @@ inline_always void label_brick_prefetch(const label_job *s, uint brick, label_ar
 inline_always void label_brick_emit(const label_job *s, uint brick, label_arrays in, global const uint *tiles,
                                     global const BITS *samples, global const uint *tables, label_mesh out,
                                     local label_row *made, label_work *work) {
-    const uint team = (uint)get_local_id(0) / LABEL_ROW_ITEMS, lane = (uint)get_local_id(0) % LABEL_ROW_ITEMS;
+    const uint own = (uint)get_local_id(0) / LABEL_ROW_ITEMS, lane = (uint)get_local_id(0) % LABEL_ROW_ITEMS;
     const label_near near = label_near_of(s, brick, tiles);
     for (uint first = 0; first < BRICK_WORDS; first += LABEL_ROWS_AT_ONCE) {
-        const uint row = first + team;
+        const uint row = first + own;
         const bool is_there = row < BRICK_WORDS && (in.rows[brick] >> row & 1);
-        if (is_there && lane == 0) label_row_make(s, row_origin_of(s, brick, row), near, in, tiles, &made[team]);
+        if (is_there && lane == 0) label_row_make(s, row_origin_of(s, brick, row), near, in, tiles, &made[own]);
         group_barrier();
-        if (is_there) label_row_emit(s, &made[team], lane, samples, tables, out);
+        if (is_there) label_row_emit(s, &made[own], lane, samples, tables, out);
         group_barrier();
     }
 }

@@ -17,7 +17,7 @@ enum { LABEL_ROW_TYPES = 21, LABEL_SHARED_TYPES = 12, LABEL_OFFSETS = 16, LABEL_
  *     for each of 64 patterns          the number of interfaces, then these
  *     LABEL_MAPS                       for each parity and tetrahedron: its eleven vertices, then its corners
  *     LABEL_POSITIONS                  for each parity and type: the vertex from its owner, three floats
- *     LABEL_CUBES                      for each parity and pattern of a cube with two labels (bits set: the first one),
+ *     LABEL_CUBES                      for each parity and pattern of a cube with two labels (bits set: the inner one),
  *                                      in bytes: the number of triangles, then three slots each
  *
  * A slot is an edge of the row's cubes (label_words.cl), and LABEL_SLOT_NEXT more where the next sample along x owns

@@ -11,7 +11,7 @@
 #define LABEL_ROW_ITEMS    (WORK_ITEMS == 1 ? 1 : 32)
 #define LABEL_ROWS_AT_ONCE (WORK_ITEMS / LABEL_ROW_ITEMS)
 
-/* What the team knows of its row: label_job.h has the order of words. */
+/* What is known of a row of cubes: label_job.h has the order of words. */
 typedef struct label_row {
     ulong words[LABEL_ROW_WORDS];
     label_cells cells[5];
@@ -152,7 +152,7 @@ inline_always label_line label_line_of(const label_job *s, row_origin p, uint ty
     return l;
 }
 
-/* index: of the sample in the grid. */
+/* index: of the sample, along x. */
 inline_always void label_vertex_emit(const label_job *s, label_line l, uint index, uint number, label_mesh out) {
     const float4 at = ((l.matrix * ((float)(s->first[0] + (int)index) + l.x) + l.y) + l.z) + l.origin;
     vstore3(at.xyz, number - s->vertex_base, out.positions + s->position_offset);

@@ -141,7 +141,7 @@ kernel void snap_words(slab s, global ulong *words, global brick_state *bricks, 
         for (uint row = ITEM_ROW; row < BRICK_WORDS && n < end && sign != SIGN_MIXED; row += BRICK_ITEMS) {
             const bool exists = origin.y + row % BRICK_ROWS < s.ny && origin.z + row / BRICK_ROWS < s.z1;
             global ulong *word = words + BRICK_WORDS * (ulong)brick + row;
-            *word = exists ? sign_word(sign) & word_valid(&s, origin.x / 64) : 0;
+            *word = exists ? sign_word(sign) & word_valid(&s, brick_word(&s, brick)) : 0;
             word[BRICK_WORDS * (ulong)s.snapping.zero_bricks] = 0;
         }
         group_barrier();
@@ -173,7 +173,7 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
         const ulong index = BRICK_WORDS * (ulong)violated_bricks[n];
         const grid_index origin = brick_origin(&s, violated_bricks[n]);
         for (uint set = ITEM_ROW; set < SETS_STRIDED; set += BRICK_ITEMS) {
-            const row_set r = rows_strided(origin.y, origin.z, origin.x / 64, set, odd_y, odd_z);
+            const row_set r = rows_strided(origin.y, origin.z, brick_word(&s, violated_bricks[n]), set, odd_y, odd_z);
             lanes wanted = rows_load(violated + index, r, true) & samples_even(&s, r);
             if (!lanes_any(wanted)) continue;
             around_make(&s, words, bricks, violated_bricks[n], &a);
@@ -183,7 +183,7 @@ kernel void snap_even(slab s, uint colour, global ulong *words, global const bri
     }
 }
 
-/* What becomes of the odd samples replaces the words of violated ones. */
+/* Words of violated samples are replaced by those of the odd samples that become zeros. */
 kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, global const uint *violated_bricks,
                      global uint *state, global ulong *violated) {
     local uint shared[1];
@@ -198,7 +198,7 @@ kernel void snap_odd(slab s, global ulong *words, global brick_state *bricks, gl
         const grid_index origin = brick_origin(&s, violated_bricks[n]);
         bool have_around = false;
         for (uint set = ITEM_ROW; set < SETS_OF_PLANES; set += BRICK_ITEMS) {
-            const row_set r = rows_of_plane(origin.y, origin.z, origin.x / 64, set);
+            const row_set r = rows_of_plane(origin.y, origin.z, brick_word(&s, violated_bricks[n]), set);
             lanes wanted = rows_load(violated + index, r, false) & ~samples_even(&s, r);
             if (lanes_any(wanted)) {
                 if (!have_around) around_make(&s, words, bricks, violated_bricks[n], &a);

@@ -25,7 +25,7 @@ typedef struct link_column {
 /* Which parts of links are loaded, as some need not be. */
 typedef struct link_parts {
     bool odd;      /* of odd samples: else of even ones, which have more */
-    bool borders;  /* on borders of the grid matter: samples outside it are left out */
+    bool borders;  /* samples on the grid's borders matter: those outside it are left out */
     bool ends;     /* first and last samples of words matter: samples of the words beside are loaded */
     bool zeros[4]; /* there may be zeros in rows a step away in neither axis, in y, in z, in both */
 } link_parts;

@@ -68,7 +68,8 @@ inline_always ulong4 rows_second(const slab *s, const brick_around *a, int y, in
     return (ulong4)(plane_beside(s, a, plane, -1, step_w, zeros)[BRICK_ROWS - 1], all.odd.s012);
 }
 
-/* Words at w + step_w of the rows a step from those of the set, 0 where there are none; words of a constant brick go on
+/* Words at w + step_w of the rows a step from those of the set. Where there are none, those
+ * of the brick at the border, which callers mask; words of a constant brick go on
  * outside the grid. */
 inline_always lanes words_beside(const slab *s, const brick_around *a, row_set r, bool strided, int step_y, int step_z,
                                  int step_w, bool zeros) {

@@ -101,11 +101,11 @@ inline_always void violated_find(const slab *s, const brick_around *a, grid_inde
     if (sign != SIGN_MIXED && !uniform_crossed(a, sign_word(sign))) return;
     l->origin = origin, l->brick = brick, l->rows = 0;
     for (uint set = 0; set < SETS_OF_PLANES; set++) {
-        const row_set r = rows_of_plane(origin.y, origin.z, origin.x / 64, set);
+        const row_set r = rows_of_plane(origin.y, origin.z, brick_word(s, brick), set);
         const borders b = borders_of(s, r);
         plane_enter(s, r, rows_wanted(s, a, r, &b, cells), &b, samples, l);
     }
-    links_prefetch(s, origin.x / 64, origin.y, origin.z, samples);
+    links_prefetch(s, brick_word(s, brick), origin.y, origin.z, samples);
     if (work->brick_count++) list_finish(s, &work->lists[work->brick_count & 1], work->offsets, samples, results);
 }
 

@@ -17,7 +17,7 @@ inline_always void violated_begin(const slab *s, violated_work *work) { link_off
 inline_always void violated_find(const slab *s, const brick_around *a, grid_index origin, uint brick,
                                  global const BITS *samples, global const ulong *cells, violated_results results,
                                  violated_work *work) {
-    const row_set r = rows_of_plane(origin.y, origin.z, origin.x / 64, (uint)get_local_id(0) % BRICK_WORDS);
+    const row_set r = rows_of_plane(origin.y, origin.z, brick_word(s, brick), (uint)get_local_id(0) % BRICK_WORDS);
     const borders b = borders_of(s, r);
     const ulong wanted = rows_wanted(s, a, r, &b, cells), border = b.by_axis[0] | b.by_axis[1] | b.by_axis[2];
     const ulong start = row_start(s, r.y, r.z) + 64ul * r.w, even = samples_even(s, r);

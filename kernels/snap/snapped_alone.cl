@@ -40,7 +40,7 @@ inline_always uchar16 snapped16_to(const slab *s, const ulong at[16], bool odd, 
     return nearest < (uchar16)LINK_EVEN ? nearest : (uchar16)1;
 }
 
-/* Turns the codes of snapped samples, which say "at the sample", into those of the edges on which their vertices lie.
+/* Turns the codes of snapped samples, which have no steps yet, into those of the edges on which their vertices lie.
  * edges: the brick's vertices, as EDGE_CODE has them. row_start: the index of a row's first sample, by bits 7 to 13 of
  * the code. */
 inline_always void snapped_turn(const slab *s, bool odd, const snapped_list *list, const uint *codes,

@@ -1,7 +1,7 @@
 /*
  * border.cl - closed surfaces: what belongs to the border of the grid, or of its present cubes, in LANES rows at once
  *
- * A face that one present cube has is on the border. Its inside part closes the surface: that of each of the two
+ * A face that only one present cube has is on the border. Its inside part closes the surface: that of each of the two
  * triangles that the split's diagonal makes of it, or in the hybrid method of the face as a whole. Inside samples of
  * the border are vertices. host/lib/tables/cap_tables.c has the triangles, by which kernel 2 emits them.
  */
@@ -97,7 +97,7 @@ inline_always bool bricks_at_border(const slab *s, global const ulong *cells, ui
 
 /* ------------------------------------------------------------------------------------------------------- triangles */
 
-/* The corners of 64 faces: a bit is set where that corner of the face is inside, or, in zero_*, a vertex. The diagonal
+/* The corners of 64 faces: a bit is set where that corner of the face is inside, or, in zero_*, snapped. The diagonal
  * joins p and q. */
 typedef struct face_corners {
     lanes p, q, u, v, zero_p, zero_q, zero_u, zero_v;
@@ -150,7 +150,7 @@ inline_always lanes border_triangles(const cube_rows *r, const border_faces *f) 
 }
 
 /* The index in the table of cases of a cube's face on the border, by the cube's parity, its corners inside, and its
- * corners that are vertices of the surface. */
+ * corners that are snapped. */
 inline_always uint border_case(uint odd, uint face, uint inside, uint zeros) {
     const uint low = face < 2 ? 2 : 1, high = face < 4 ? 4 : 2, first = (face & 1) << face / 2;
     uint digits = 0;

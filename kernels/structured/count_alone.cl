@@ -13,8 +13,8 @@ inline_always lanes rows_valid(const slab *s, uint y, uint w) {
 }
 
 /* Whether any sample that follows a uniform brick in x, y or z is on the other side. Bricks of the same tile that are
- * uniform decide by their sign; in others the words are read. With vertices at samples, a mixed brick counts as
- * different, and its words are not read. */
+ * uniform decide by their sign; in others the words are read. In method snap a mixed brick counts as different, and
+ * its words are not read. */
 inline_always bool neighbours_differ(const slab *s, tile t, uint y, uint z, uint w, tile_words signs, uint sign) {
     const ulong uniform = sign_word(sign);
     for (uint n = 1; n < 8; n++) {

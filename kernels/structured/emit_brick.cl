@@ -108,7 +108,7 @@ inline_always void vertices_emit(const slab *s, grid_index origin, uint count, u
 
 /* -------------------------------------------------------------------------------------------------------- triangles */
 
-/* Both texts of cubes_list append the active cubes of the rows in `mask` to the list, which has `count` items, and
+/* Both forms of cubes_list append the active cubes of the rows in `mask` to the list, which has `count` items, and
  * return how many it has then. An item is a cube's index in the table of numbers from bit CASE_BITS on, below that its
  * case. With mask registers, patterns of all rows are made first: loading a part of a vector that was just stored would
  * stall. */
@@ -213,8 +213,8 @@ inline_always uint border_list(const slab *s, grid_index origin, uint mask, row_
 
 #endif
 
-/* Both variants of case_store: stores the vertex numbers of a cube's triangles, by the slots in its case. Surplus
- * numbers follow them. `number` points to the entry of the cube's first sample. */
+/* Both forms of case_store: stores the vertex numbers of a cube's triangles, by the slots in its case. Surplus
+ * numbers follow them. `number` points to the numbers of the cube's first sample. */
 #ifdef WORD_SHUFFLES
 #define WORDS_AT(words) (*(const words16 *)(words))
 

@@ -135,8 +135,8 @@ inline_always void corners_store(const brick_signs *signs, brick_work *work) {
     }
 }
 
-/* Crossed edges and active cubes of the brick itself. at_border: whether a closed surface may end in the brick; else
- * none of its samples, and of those that its cubes have, is on the border. */
+/* Crossed edges and active cubes of the brick itself. at_border: whether samples of the brick, or of its
+ * cubes, may be on the border. */
 inline_always void crossed_store(const slab *s, grid_index origin, const brick_signs *signs, bool at_border,
                                  row_results k1, brick_work *work) {
     for (uint n = 0; n < BRICK_PLANES; n++) {
@@ -158,8 +158,8 @@ inline_always void crossed_store(const slab *s, grid_index origin, const brick_s
 /* Whether the first cube of a row of the brick is odd. */
 inline_always uint row_odd(const slab *s, uint y, uint z) { return (s->parity ^ y ^ z) & 1; }
 
-/* Stores the number of a vertex of a row. That of a vertex at a sample is stored twice: also as the last number of the
- * sample before it in x (case_slots.h). */
+/* Stores the number of a vertex of a row. With eight numbers for a sample, that of a vertex at a sample is stored
+ * twice: also as the last number of the sample before it in x (case_slots.h). */
 inline_always void number_store(uint *row, uint bit, uint type, uint number) {
     row[NUMBER_STEP * bit + type] = number;
     if (AT_SAMPLE_TWICE && type == AT_SAMPLE_TYPE) row[bit ? NUMBER_STEP * bit - 1 : AT_SAMPLE_TYPE] = number;

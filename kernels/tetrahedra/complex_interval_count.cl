@@ -185,8 +185,8 @@ inline_always point_counts counts_of(ulong x) {
     return counts;
 }
 
-/* Few clusters are cut by both bounds, and how many tetrahedra one gives depends only on how many of its points are not
- * below, and how many above. */
+/* Few clusters are cut by both bounds, and how many tetrahedra a tetrahedron gives depends only on how many of its
+ * points are not below, and how many above. */
 inline_always uint cluster_tetrahedra(const volume_cluster *c, global const uchar *cases) {
     const bool low_cuts = nibbles_mixed(c->low) != 0;
     uint sum = 0;
@@ -201,8 +201,8 @@ inline_always uint cluster_tetrahedra(const volume_cluster *c, global const ucha
     return (uint)popcount(whole) + n.ones * cases[first] + n.twos * cases[second] + n.threes * cases[third];
 }
 
-/* Of a bound: the tetrahedra that it cuts, and those of them with four crossed edges, as two points are on either
- * side. */
+/* The cuts of a cluster, by both bounds together, and those of them with four crossed edges, as two points are on
+ * either side. */
 inline_always uint2 cluster_cuts(const volume_cluster *c) {
     const point_counts low = counts_of(c->low), high = counts_of(c->high);
     return (uint2)(low.ones + low.twos + low.threes + high.ones + high.twos + high.threes, low.twos + high.twos);

@@ -112,7 +112,8 @@ inline_always uint *cuts_store(const volume_cluster *c, global const uint *point
     return out;
 }
 
-/* No tetrahedron is cut. Some do not exist, as the cluster is the last one, or have a missing point. */
+/* No tetrahedron is cut. Some do not exist, as the cluster is the last one, have a missing point, or lie
+ * outside. */
 inline_always uint *few_store(ulong reached, global const uint *points, const volume_emit *e, uint *out) {
     for (ulong rest = reached; rest; rest &= rest - 1, out += 4) {
         uint16 numbers = 0, none = 0;
@@ -155,7 +156,7 @@ inline_always void entries_resolve(edge_span span, const volume_emit *e) {
 }
 
 /* A copy of the end of the output. It begins at the cache line that the next tetrahedron goes to; the line's first
- * `skip` words were stored before. Lines are stored when they are whole. */
+ * `skip` words belong to the tile before. Lines are stored when they are whole. */
 enum { LINE_WORDS = 16, STAGE_FROM = 512, STAGE_WORDS = STAGE_FROM + 6 * 4 * CLUSTER_TETRAHEDRA + 2 * LINE_WORDS };
 
 typedef struct out_stage {

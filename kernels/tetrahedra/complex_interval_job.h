@@ -49,11 +49,12 @@ enum { SCAN_VOLUME, SCAN_CUTS, SCAN_CROSSINGS, VOLUME_SCANS, TILE_EDGES = TILE_E
 
 enum { VOLUME_TILE_MOST = 65536 / (2 * 4 * CLUSTER_TETRAHEDRA) };
 
-/* An edge in the list, and a slot: the index of its edge behind the tile's first one. */
+/* An edge in the list, and a slot: the index of its edge, counted from the tile's first one. */
 enum { VOLUME_EDGE_BYTES = 8, VOLUME_SLOT_BYTES = 2 };
 
 /* For each edge in the list: its entry in the table; then, with this bit, the first edge of the same points, which owns
- * the vertex. In the end that edge has the vertex's number instead of its first point. */
+ * the vertex. In the end that edge has the vertex's number instead of its first point, and a work-item
+ * alone puts the number itself into the entry. */
 #define EDGE_RESOLVED 0x80000000u
 
 /* Vertices of a case, as bytes: one of the tetrahedron's points; a slot of its crossed edges of the low bound, or of

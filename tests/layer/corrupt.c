@@ -44,7 +44,8 @@ static const mistake mistakes[] = {
     {"fallback", "atomic_add(&shared[PREFIX_VERTICES], e.vertices);",
      "atomic_add(&shared[PREFIX_VERTICES], e.vertices + 1);"},
     {"starved", "uint2 prefix = tile_prefix(",
-     "for (uint c = 0; number && c < 2; c++) atomic_xchg(scan_at(tiles, number - 1, c), scan_word(SCAN_EMPTY, 0));\n"
+     "for (uint c = 0; tile_index && c < 2; c++) atomic_xchg(scan_at(tiles, tile_index - 1, c), scan_word(SCAN_EMPTY, "
+     "0));\n"
      "uint2 prefix = tile_prefix("},
     {"comparison", "<= (samples64)(BITS)test->inside_span", "< (samples64)(BITS)test->inside_span"},
 };
