@@ -178,7 +178,6 @@ static int judge_surface(surface_job *w) {
         s->coarse_in_mesh.lost > s->coarse_in_file.lost ? s->coarse_in_mesh.lost : s->coarse_in_file.lost;
     if (!s->has_dropped) status = surface_tell_degenerate(&j->data, &j->field, s);
     if (!s->has_dropped && j->o->output) surface_files_tell_joined(j->o, s);
-    if (j->o->closed && !j->o->check) surface_tell_closed(&j->blocks, s);
     result_mesh_tell_dropped(s);
     surface_simplify_tell(j->o, s);
     return !status && j->o->check ? surface_judge(&j->blocks, s, j->o->closed, &w->is_good) : status;
@@ -282,6 +281,7 @@ static int make_surfaces(job *j) {
         int status = make_surface(j, s);
         if (status) return status;
     }
+    if (j->o->closed && !j->o->check) surface_tell_closed(&j->blocks, j->report.surfaces, count);
     return 0;
 }
 
@@ -309,7 +309,7 @@ static int make_streamed(job *j) {
     for (size_t n = 0; n < count && !status; n++) surface_tell_isovalue(s[n].iso);
     for (size_t n = 0; n < count && !status && !j->o->part[1]; n++)
         status = surface_tell_empty(&j->data, &j->field, &s[n]); /* a part may well be empty */
-    for (size_t n = 0; n < count && !status && j->o->closed; n++) surface_tell_closed(&j->blocks, &s[n]);
+    if (!status && j->o->closed) surface_tell_closed(&j->blocks, s, count);
     return status;
 }
 

@@ -36,6 +36,7 @@ typedef struct label_job {
     dataset data;
     scalar field;
     block_list blocks;
+    int suits_world; /* of blocks_suit_world */
     tc_labels_options how;
     engine main, reference; /* reference: for --verify only */
     tc_mesh *reference_mesh;
@@ -78,6 +79,7 @@ static int read_input(label_job *j) {
     if (!status) status = input_select(&j->request, &j->data, &j->field);
     if (!status) status = label_samples_make(j->o->operands[0], &j->data, &j->field);
     if (!status) status = blocks_cut(j->o, &j->data, &j->field, 0, &j->blocks);
+    if (!status) j->suits_world = blocks_suit_world(&j->blocks);
     j->report.times.read_ms = now_ms() - begin;
     return status ? status : progress_status();
 }
@@ -190,9 +192,8 @@ static int check_label(label_job *j, label_row *row) {
 static int write_label(label_job *j, label_row *row) {
     const double begin = now_ms();
     row->path = label_file_name(j->o, row->label);
-    const int status =
-        row->path ? label_file_write(j->o, &j->data, blocks_suit_world(&j->blocks), row->path, &j->one.mesh, &j->files)
-                  : STATUS_FAILED;
+    const int status = row->path ? label_file_write(j->o, &j->data, j->suits_world, row->path, &j->one.mesh, &j->files)
+                                 : STATUS_FAILED;
     j->report.times.write_ms += now_ms() - begin;
     return status;
 }
@@ -235,11 +236,10 @@ static int publish(label_job *j) {
     if (!j->is_good) return 0;
     if (j->o->output && !j->o->separate_labels) {
         j->report.path = label_file_name(j->o, 0);
-        status = j->report.path ? label_file_write(j->o, &j->data, blocks_suit_world(&j->blocks), j->report.path,
-                                                   &j->mesh, &j->files)
+        status = j->report.path ? label_file_write(j->o, &j->data, j->suits_world, j->report.path, &j->mesh, &j->files)
                                 : STATUS_FAILED;
     }
-    if (!status) label_files_tell(j->o, blocks_suit_world(&j->blocks), &j->mesh);
+    if (!status) label_files_tell(j->o, j->suits_world, &j->mesh);
     if (!status && j->o->preview) status = write_preview(j);
     if (!status) status = output_group_publish(&j->files);
     j->report.times.write_ms += now_ms() - begin;

@@ -159,7 +159,8 @@ static void test_imagej(void) {
 static void test_ome(void) {
     static const double matrix[12] = {0.5, 0, 0, 0, 0, 0.25, 0, 0, 0, 0, 1.5, 0};
     tiff_form f = plain;
-    f.description = OME_PIXELS("XYZCT", "2", "3", "2") "PhysicalSizeXUnit='mm'></Pixels></Image></OME>";
+    f.description = OME_PIXELS("XYZCT", "2", "3", "2") "PhysicalSizeXUnit='mm' PhysicalSizeYUnit='mm' "
+                                                       "PhysicalSizeZUnit='mm'></Pixels></Image></OME>";
     read_request r = write_tiff("a.tif", &f, 12, 0);
     r.component = r.frame = 1;
     read_image v;
@@ -177,6 +178,17 @@ static void test_ome(void) {
     status = image_read(&r, &v);
     EXPECT(!status && v.dims[2] == 3 && image_value(&v, 20) == test_value(TC_U16, 60), "OME, channels first: %s",
            failure_text());
+    image_release(&v);
+
+    static const double in_mm[12] = {0.5, 0, 0, 0, 0, 250, 0, 0, 0, 0, 0.0015, 0};
+    f.description = "<ome:OME xmlns:ome='http://www.openmicroscopy.org/Schemas/OME/2016-06'><ome:Pixels "
+                    "DimensionOrder='XYZCT' SizeC='1' SizeZ='6' SizeT='1' PhysicalSizeX='0.5' PhysicalSizeXUnit='mm' "
+                    "PhysicalSizeY='0.25' PhysicalSizeYUnit='m' PhysicalSizeZ='1.5'/></ome:OME>"; /* a prefix; units */
+    r = write_tiff("a.tif", &f, 6, 0);
+    status = image_read(&r, &v);
+    EXPECT(!status && v.dims[2] == 6 && strcmp(v.d.units, "mm") == 0, "OME with a prefix: %s", failure_text());
+    for (int n = 0; n < 12 && !status; n++)
+        EXPECT(fabs(((const double *)v.matrix)[n] - in_mm[n]) <= 1e-12 * in_mm[n], "OME's units: element %d", n);
     image_release(&v);
 
     f.description = OME_PIXELS("XYCZT", "2", "9", "1") "/></Image></OME>"; /* other files have the rest */

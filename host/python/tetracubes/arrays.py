@@ -106,7 +106,7 @@ def matrix(spacing, origin, direction, axes):
 
 
 class _Memory:
-    """Memory of the library's that numpy reads in address; the owner lives as long as arrays of it."""
+    """Memory of the library's that numpy reads in place; the owner lives as long as arrays of it."""
 
     def __init__(self, address, shape, dtype, owner):
         self.__array_interface__ = {"data": (address, False), "shape": shape, "typestr": np.dtype(dtype).str,

@@ -262,24 +262,47 @@ static double number_of(const char *tag, const char *name, double otherwise) {
     return text && end == text + length && value > 0 && value < 1e9 ? value : otherwise;
 }
 
-/* Micrometres where no unit stands there, as the model has it. */
-static const char *unit_of(const char *tag, const char *name) {
-    static const char *const known[][2] = {{"nm", "nm"}, {"mm", "mm"}, {"cm", "cm"}, {"m", "m"}};
+/* Units of distances, by how many micrometres they are. Where none stands there it is the micrometre, as the model has
+ * it. */
+static const struct {
+    const char *written, *name;
+    double micrometres;
+} units[] = {{"\xc2\xb5m", "um", 1}, {"\xce\xbcm", "um", 1}, {"nm", "nm", 1e-3},
+             {"mm", "mm", 1e3},      {"cm", "cm", 1e4},      {"m", "m", 1e6}};
+
+enum { UNIT_COUNT = sizeof units / sizeof *units };
+
+/* The index of an attribute's unit; UNIT_COUNT for one that is not known. */
+static int unit_of(const char *tag, const char *name) {
     size_t length;
     const char *text = attribute_of(tag, name, &length);
-    for (size_t n = 0; text && n < sizeof known / sizeof *known; n++)
-        if (length == strlen(known[n][0]) && strncmp(text, known[n][0], length) == 0) return known[n][1];
-    return !text || strncmp(text, "\xc2\xb5m", 3) == 0 || strncmp(text, "\xce\xbcm", 3) == 0 ? "um" : NULL;
+    int n = 0;
+    while (text && n < UNIT_COUNT && (length != strlen(units[n].written) || strncmp(text, units[n].written, length)))
+        n++;
+    return n;
+}
+
+/* Distances in the unit of the first axis, as far as units are known. */
+static void read_spacing(const char *tag, tiff_notes *n) {
+    static const char *const steps[3] = {"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
+    static const char *const names[3] = {"PhysicalSizeXUnit", "PhysicalSizeYUnit", "PhysicalSizeZUnit"};
+    const int first = unit_of(tag, names[0]);
+    size_t length;
+    for (int axis = 0; axis < 3; axis++) {
+        const int own = unit_of(tag, names[axis]);
+        n->spacing[axis] = number_of(tag, steps[axis], 1);
+        if (own < UNIT_COUNT && first < UNIT_COUNT && attribute_of(tag, steps[axis], &length))
+            n->spacing[axis] *= units[own].micrometres / units[first].micrometres;
+    }
+    if (first < UNIT_COUNT && attribute_of(tag, steps[0], &length)) n->units = units[first].name;
 }
 
 static void read_ome(const char *text, tiff_notes *n) {
-    static const char kinds[] = "CZT";
+    static const char kinds[] = "CZT"; /* as TIFF_CHANNELS and the next */
     static const char *const sizes[TIFF_DIMENSIONS] = {"SizeC", "SizeZ", "SizeT"};
-    static const char *const steps[3] = {"PhysicalSizeX", "PhysicalSizeY", "PhysicalSizeZ"};
-    const char *tag = strstr(text, "<Pixels"), *units = tag ? unit_of(tag, "PhysicalSizeXUnit") : NULL;
+    const char *plain = strstr(text, "<Pixels"), *tag = plain ? plain : strstr(text, ":Pixels");
     size_t length;
     const char *order = tag ? attribute_of(tag, "DimensionOrder", &length) : NULL;
-    if (!tag) tag = strstr(text, ":Pixels"), order = tag ? attribute_of(tag, "DimensionOrder", &length) : NULL;
     if (!order || length != 5 || strncmp(order, "XY", 2) != 0) return;
     for (int d = 0; d < TIFF_DIMENSIONS; d++) {
         const char *kind = memchr(kinds, order[2 + d], TIFF_DIMENSIONS);
@@ -289,8 +312,7 @@ static void read_ome(const char *text, tiff_notes *n) {
     }
     n->writer = TIFF_OME;
     n->images = n->sizes[0] * n->sizes[1] * n->sizes[2];
-    for (int axis = 0; axis < 3; axis++) n->spacing[axis] = number_of(tag, steps[axis], 1);
-    n->units = attribute_of(tag, steps[0], &length) ? units : NULL;
+    read_spacing(tag, n);
 }
 
 static void read_notes(TIFF *t, tiff_notes *n) {

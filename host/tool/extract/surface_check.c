@@ -75,7 +75,7 @@ int surface_judge(const block_list *blocks, const surface_report *s, int is_clos
                 counted(t->misoriented_edges, "misoriented edge", "misoriented edges").text,
                 counted(t->orphan_vertices, "unused vertex", "unused vertices").text,
                 counted(t->invalid_triangles, "invalid triangle", "invalid triangles").text);
-    if (!*good && is_closed && t->nonmanifold_edges && blocks_have_missing(blocks))
+    if (!*good && is_closed && t->nonmanifold_edges && blocks_have_missing(blocks, 1))
         message(
             "isovalue %s: where two present cells meet only along an edge, beside missing ones, a closed surface has "
             "four triangles at that edge: leave out one of them, or take in their neighbours",

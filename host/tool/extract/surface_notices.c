@@ -113,10 +113,11 @@ int surface_tell_degenerate(const dataset *d, const scalar *field, const surface
 
 /* --------------------------------------------------------------------------------------------------------- closed */
 
-void surface_tell_closed(const block_list *blocks, const surface_report *s) {
-    if (!s->triangle_count || !notice_wanted() || !blocks_have_missing(blocks)) return;
+void surface_tell_closed(const block_list *blocks, const surface_report *s, size_t count) {
+    size_t n = 0;
+    while (n < count && (!s[n].triangle_count || !s[n].has_mesh)) n++;
+    if (n == count || !notice_wanted() || !blocks_have_missing(blocks, !s[n].is_streamed)) return;
     notice(
-        "isovalue %s: where two present cells meet only along an edge, beside missing ones, a closed surface has four "
-        "triangles at that edge: --check counts such edges",
-        s->iso->text);
+        "where two present cells meet only along an edge, beside missing ones, a closed surface has four triangles at "
+        "that edge: --check counts such edges");
 }

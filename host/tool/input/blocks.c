@@ -301,11 +301,11 @@ static int has_nonfinite(const prepared_block *b) {
     }
 }
 
-int blocks_have_missing(const block_list *list) {
+int blocks_have_missing(const block_list *list, int reads_samples) {
     for (int n = 0; n < list->count; n++) {
         const prepared_block *b = &list->blocks[n];
-        if (!b->is_cut &&
-            (b->scalar->blanked_points || b->scalar->blanked_cells || b->scalar->has_nodata || has_nonfinite(b)))
+        if (!b->is_cut && (b->scalar->blanked_points || b->scalar->blanked_cells || b->scalar->has_nodata ||
+                           (reads_samples && has_nonfinite(b))))
             return 1;
     }
     return 0;
@@ -314,5 +314,5 @@ int blocks_have_missing(const block_list *list) {
 int blocks_may_touch(const block_list *list) {
     for (int n = 0; n < list->count; n++)
         if (list->blocks[n].is_cut) return 1;
-    return blocks_have_missing(list);
+    return blocks_have_missing(list, 1);
 }

@@ -37,8 +37,9 @@ void block_describe(const block_list *list, int n, tc_grid_options *grid, tc_gri
 int block_grid(const options *o, const block_list *list, int n, tc_context *context, const double *origin,
                tc_grid **grid);
 
-/* Whether samples or cells of a structured block are missing. Reads floating samples until one is found. */
-int blocks_have_missing(const block_list *list);
+/* Whether samples or cells of a structured block are missing: blanked, or a value that stands for none; with
+ * reads_samples also not finite, for which floating samples are read until one is found. */
+int blocks_have_missing(const block_list *list, int reads_samples);
 
 /* Whether a vertex may rightly have several fans of triangles: beside missing cells, and where cells meet in a point or
  * an edge only. */
