@@ -45,8 +45,8 @@ typedef struct brick_range {
 
 /* The table of cases for kernel 2, of 2 parities x CASE_COUNT patterns of a cube: the number of triangles, then three
  * vertices for each. A pattern of two signs has a bit per corner; where the surface can go through samples, a digit to
- * the base 3. Then 256 shorts follow
- * the table, which turn bits into digits: entry n is the sum of 3^m over the bits m of n. */
+ * the base 3. Then 256 shorts follow the table, which turn bits into digits: entry n is the sum of 3^m over the bits m
+ * of n. */
 #define CASE_COUNT(method_types) ((method_types) > 6 ? 6561 : 256)
 enum { CUBE_CASE_BYTES = 32 };
 

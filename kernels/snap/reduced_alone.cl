@@ -19,7 +19,7 @@
  * 1. Where n is a vertex, its ring has to change twice. From here on n counts as + or -, as p does.
  * 2. Where n differs from both p and q, look at the two sides of the ring, x1 with x2 and x3 with x4. If one side has a
  *    sample with the sign of n, n takes the sign of p. If none has, n is a component by itself, and is left out. If
- * both have, the link is left to regular_alone.cl; smooth surfaces have no such links.
+ *    both have, the link is left to regular_alone.cl; smooth surfaces have no such links.
  * 3. Now no n connects or separates anything, and the samples along the axes are an octahedron. Where the two on one
  *    axis differ, + and - are connected. Where all six agree, exactly one n must have been left out. Otherwise two that
  *    have the same sign on an axis are not connected.
