@@ -23,8 +23,8 @@ int surface_tell_empty(const dataset *d, const scalar *field, const surface_repo
  * is told already. s has its summary. Returns 0 or STATUS_FAILED. */
 int surface_tell_degenerate(const dataset *d, const scalar *field, const surface_report *s);
 
-/* Of closed surfaces that are not checked: that they may be no manifolds beside missing cells; once for all. Of streamed
- * ones samples are not read once more, so those that are not finite are not looked for. */
+/* Of closed surfaces that are not checked: that they may be no manifolds beside missing cells; once for all. Of
+ * streamed ones samples are not read once more, so those that are not finite are not looked for. */
 void surface_tell_closed(const block_list *blocks, const surface_report *s, size_t count);
 
 #endif
