@@ -101,7 +101,7 @@ static bool slab_fits(const label_run *r, const label_slab *part, uint64_t more)
 static tc_status refuse(const label_run *r, const label_slab *part) {
     return (tc_status)fail(TC_ERROR_MEMORY,
                            "%s has no room for a layer of the label map and its surfaces: allow %llu bytes "
-                           "(max_memory_bytes), or use the reference engine",
+                           "or more, or use the reference engine",
                            r->context->info.name,
                            (unsigned long long)(r->held + slab_bytes(r, part) + mesh_bytes(part)));
 }

@@ -258,7 +258,7 @@ const option option_table[] = {
     {"--json", NULL, NULL, REPORTS, VALUE_NONE, IN(json), NULL,
      "print the results as one JSON object"},
     {"--quiet", NULL, NULL, READS | COMMAND_GENERATE | COMMAND_JOIN, VALUE_NONE, IN(quiet), NULL,
-     "no progress, no notices, no report but that of --json"},
+     "no progress, no notices, no report in words"},
     {"--help", "-h", NULL, ALL, VALUE_NONE, IN(help), NULL,
      "print this"},
 };
