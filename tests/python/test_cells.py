@@ -87,6 +87,9 @@ def test_tool_makes_the_same(tmp_path):
     ({"cells": [("brick", CELLS)]}, "'brick' are not known"), ({"cells": [("hexahedron", CELLS + 1)]}, "point"),
     ({"cells": (VTK[0], VTK[1] + 1, VTK[2])}, "rise from 0"), ({"cells": (VTK[0], VTK[1][1:], VTK[2])}, "shapes"),
     ({"cells": (VTK[0], np.concatenate([[0, 16, 8], VTK[1][3:]]), VTK[2])}, "rise from 0"),
+    ({"cells": [("hexahedron", CELLS + 0.5)]}, "float64, not integers"),
+    ({"cells": (VTK[0].astype(int) + 256, *VTK[1:])}, "go from 268 to 268: they do not fit uint8"),
+    ({"cells": (VTK[0], VTK[1] * 1.0, VTK[2])}, "offsets of cells are of type float64"),
     ({"cells": (VTK[0] * 0 + 42, *VTK[1:])}, "(?i)polyhedr"), ({"cells": [("hexahedron", CELLS[0])]}, "dimensions"),
     ({"points": POINTS * np.nan}, "finite"), ({"level": np.inf}, "isovalue"),
 ])

@@ -22,6 +22,19 @@ _MESHIO = {
 }
 
 
+def _integers(values, kind, what):
+    """The values as an array of an integer type; what it cannot hold is refused."""
+    given = np.asarray(values)
+    if given.size == 0 or np.can_cast(given.dtype, kind):
+        return np.ascontiguousarray(given, kind)
+    if given.dtype.kind not in "iu":
+        raise ValueError(f"{what} are of type {given.dtype}, not integers")
+    converted = np.ascontiguousarray(given, kind)
+    if (converted != given).any():
+        raise ValueError(f"{what} go from {given.min()} to {given.max()}: they do not fit {np.dtype(kind)}")
+    return converted
+
+
 def _blocks(cells):
     """Types, offsets and connectivity of meshio's blocks: pairs of a type's name and points (cells, points of each)."""
     types, sizes, points = [], [], []
@@ -29,7 +42,7 @@ def _blocks(cells):
         name, data = (block.type, block.data) if hasattr(block, "data") else block
         if name not in _MESHIO:
             raise ValueError(f"cells of type {name!r} are not known: {', '.join(_MESHIO)} are")
-        data = np.asarray(data, np.int64)
+        data = _integers(data, np.int64, f"points of cells of type {name!r}")
         if data.ndim != 2:
             raise ValueError(f"cells of type {name!r} have {data.ndim} dimensions, not 2: cells, points of each")
         types.append(np.full(len(data), _MESHIO[name], np.uint8))
@@ -41,9 +54,9 @@ def _blocks(cells):
 
 def _vtk(cells):
     """Types, offsets and connectivity as VTK has them."""
-    types, offsets, connectivity = cells
-    types, offsets, connectivity = (np.ascontiguousarray(array, kind) for array, kind in
-                                    ((types, np.uint8), (offsets, np.int64), (connectivity, np.int64)))
+    types = _integers(cells[0], np.uint8, "types of cells")
+    offsets = _integers(cells[1], np.int64, "offsets of cells")
+    connectivity = _integers(cells[2], np.int64, "connectivity of cells")
     if types.ndim != 1 or offsets.shape != (len(types) + 1,) or connectivity.ndim != 1:
         raise ValueError(f"cells have types, offsets and connectivity of the shapes {types.shape}, {offsets.shape} and "
                          f"{connectivity.shape}, not (n,), (n + 1,) and (m,)")
