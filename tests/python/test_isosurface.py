@@ -173,7 +173,8 @@ def test_grid(ball):
 
 
 def test_no_surface(surface):
-    mesh = surface(level=1e6, normals=True, carry={"a": np.zeros((25, 29, 33))})
+    with pytest.warns(RuntimeWarning, match="at 1000000.0 is empty"):
+        mesh = surface(level=1e6, normals=True, carry={"a": np.zeros((25, 29, 33))})
     assert mesh.vertices.shape == mesh.faces.shape == mesh.normals.shape == (0, 3) and mesh.values["a"].shape == (0,)
 
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import warnings
 import weakref
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NamedTuple, TypeVar
@@ -329,11 +330,16 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
         mesh = tetracubes.isosurface(volume, 127.5, spacing=(2, 1, 1))
         mesh.vertices, mesh.faces
 
-    Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it.
+    Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it. Where
+    there is no surface, as the level lies outside the volume's values, the mesh is empty, and a RuntimeWarning says so.
     """
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
-        return grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)
+        mesh = grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)
+    if len(mesh.faces) == 0:
+        warnings.warn(f"the surface at {level} is empty: no cell has samples on both sides of it", RuntimeWarning,
+                      stacklevel=2)
+    return mesh
 
 
 def _fields_of(carry):
