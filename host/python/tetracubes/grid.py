@@ -331,13 +331,13 @@ def isosurface(volume: Any, level: float, *, spacing: npt.ArrayLike = 1, origin:
         mesh.vertices, mesh.faces
 
     Arguments are those of Grid, and of Grid.extract. Bad input is a ValueError that says what is wrong with it. Where
-    there is no surface, as the level lies outside the volume's values, the mesh is empty, and a RuntimeWarning says so.
+    there is no surface the mesh is empty, and a RuntimeWarning says so.
     """
     with Grid(volume, spacing=spacing, origin=origin, direction=direction, mask=mask, nodata=nodata, axes=axes,
               device=device, engine=engine, max_memory=max_memory, progress=progress) as grid:
         mesh = grid.extract(level, method=method, snap=snap, normals=normals, closed=closed, carry=carry)
     if len(mesh.faces) == 0:
-        warnings.warn(f"the surface at {level} is empty: no cell has samples on both sides of it", RuntimeWarning,
+        warnings.warn(f"the surface at {level} is empty: does the level lie within the values?", RuntimeWarning,
                       stacklevel=2)
     return mesh
 
